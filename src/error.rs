@@ -1,0 +1,161 @@
+//! What can go wrong. Every message is one line that names the thing, the value found and what was expected.
+
+use std::path::{Path, PathBuf};
+
+use crate::frame::{PixelFormat, Size};
+
+/// The result of every fallible call of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Everything that this crate can fail with.
+///
+/// The variants carry both values where two are compared, so that a caller can act on them without reading the text.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file could not be opened, read, written or renamed.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file, or a name such as `standard input`.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// A file was read, but its content is not what its format demands.
+    #[error("{}: {what} is {found}, expected {expected}", path.display())]
+    Format {
+        /// The file, or a name such as `standard input`.
+        path: PathBuf,
+        /// The part of the file that is wrong, for example `magic number`.
+        what: &'static str,
+        /// The value found there.
+        found: String,
+        /// What was expected instead.
+        expected: String,
+    },
+    /// A parameter is outside its range.
+    #[error("{name} is {value}, expected {expected}")]
+    Parameter {
+        /// The parameter's name, as it stands in its struct.
+        name: &'static str,
+        /// The value given.
+        value: String,
+        /// The range or set of legal values.
+        expected: String,
+    },
+    /// A slice is too short or too long for the picture that it should hold.
+    #[error("{what} holds {found} elements, expected {expected}")]
+    Length {
+        /// What the slice holds, for example `frame data`.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that the size, format and stride ask for.
+        expected: usize,
+    },
+    /// Two pictures that belong together differ in size.
+    #[error("{what} is {found}, expected {expected}")]
+    SizeMismatch {
+        /// Which picture, for example `second frame`.
+        what: String,
+        /// Its size.
+        found: Size,
+        /// The size that it should have.
+        expected: Size,
+    },
+    /// A frame's pixel format is not the one that the engine was made for.
+    #[error("frame format is {found}, expected {expected}")]
+    PixelFormat {
+        /// The frame's format.
+        found: PixelFormat,
+        /// The engine's format.
+        expected: PixelFormat,
+    },
+    /// A picture is larger than the adapter allows.
+    #[error("{what} of {size} needs {needed} bytes, over the limit of {limit} of {adapter}")]
+    TooLarge {
+        /// The buffer's name.
+        what: String,
+        /// The frame's size.
+        size: Size,
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+        /// The adapter that sets the limit.
+        adapter: String,
+    },
+    /// No adapter fits. The message says what is there and what to install.
+    #[error("no usable GPU adapter: {reason}")]
+    NoAdapter {
+        /// Why, and what can be done.
+        reason: String,
+    },
+    /// The GPU device was lost and could not be brought back, or the caller did not ask for that.
+    #[error("GPU device lost on {adapter}: {reason}")]
+    DeviceLost {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// A frame was not done by its deadline. It may still be asked for again.
+    #[error("frame {frame} not done after {waited_ms} ms, deadline {deadline_ms} ms")]
+    Timeout {
+        /// The frame's number.
+        frame: u64,
+        /// How long was waited.
+        waited_ms: u64,
+        /// How long it was allowed to take.
+        deadline_ms: u64,
+    },
+    /// More frames are in flight than the engine has slots for.
+    #[error("{in_flight} frames in flight, at most {limit}: wait for one before the next submit")]
+    Busy {
+        /// Frames submitted and not yet taken.
+        in_flight: usize,
+        /// Slots of the engine.
+        limit: usize,
+    },
+    /// A ticket does not belong to a frame in flight: it was taken already, or dropped.
+    #[error("ticket {ticket} is not in flight: taken already, dropped, or of another engine")]
+    Ticket {
+        /// The ticket's frame number.
+        ticket: u64,
+    },
+    /// A plan, shader or kernel contradicts itself: a mistake in this crate, found before it could do harm.
+    #[error("{kernel}: {problem}")]
+    Kernel {
+        /// The kernel or plan step.
+        kernel: String,
+        /// What does not fit.
+        problem: String,
+    },
+}
+
+impl Error {
+    /// An [`Error::Io`] of a file.
+    pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::Io { path: path.as_ref().to_owned(), source }
+    }
+
+    /// An [`Error::Format`] of a file.
+    pub fn format(
+        path: impl AsRef<Path>,
+        what: &'static str,
+        found: impl ToString,
+        expected: impl ToString,
+    ) -> Self {
+        Self::Format {
+            path: path.as_ref().to_owned(),
+            what,
+            found: found.to_string(),
+            expected: expected.to_string(),
+        }
+    }
+
+    /// An [`Error::Parameter`].
+    pub fn parameter(name: &'static str, value: impl ToString, expected: impl ToString) -> Self {
+        Self::Parameter { name, value: value.to_string(), expected: expected.to_string() }
+    }
+}

@@ -1,0 +1,176 @@
+use std::fmt;
+
+use super::Size;
+use crate::error::{Error, Result};
+
+/// How a pixel is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PixelFormat {
+    /// One byte, 0 to 255.
+    Gray8,
+    /// Two bytes in the machine's byte order, 0 to 65535.
+    Gray16,
+    /// Three bytes: red, green, blue.
+    Rgb8,
+    /// Four bytes: red, green, blue, and alpha, which is ignored.
+    Rgba8,
+}
+
+impl PixelFormat {
+    /// Bytes of one pixel.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Gray8 => 1,
+            Self::Gray16 => 2,
+            Self::Rgb8 => 3,
+            Self::Rgba8 => 4,
+        }
+    }
+}
+
+impl fmt::Display for PixelFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gray8 => "gray8",
+            Self::Gray16 => "gray16",
+            Self::Rgb8 => "rgb8",
+            Self::Rgba8 => "rgba8",
+        })
+    }
+}
+
+/// A picture that is borrowed from the caller, never copied by this type.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    size: Size,
+    format: PixelFormat,
+    stride_bytes: usize,
+    data: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    /// A frame whose rows follow each other without a gap.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a size that is out of range, [`Error::Length`] if `data` is not exactly as long as the
+    /// size and format ask for.
+    pub fn new(size: Size, format: PixelFormat, data: &'a [u8]) -> Result<Self> {
+        size.validate()?;
+        let expected = size.pixels() * format.bytes();
+        if data.len() != expected {
+            return Err(Error::Length { what: "frame data", found: data.len(), expected });
+        }
+        Self::with_stride(size, format, size.width as usize * format.bytes(), data)
+    }
+
+    /// A frame whose rows begin `stride_bytes` apart. The last row may end early, at its last pixel.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a size that is out of range or a stride below one row, [`Error::Length`] if `data` is
+    /// too short.
+    pub fn with_stride(size: Size, format: PixelFormat, stride_bytes: usize, data: &'a [u8]) -> Result<Self> {
+        size.validate()?;
+        let row = size.width as usize * format.bytes();
+        if stride_bytes < row {
+            return Err(Error::parameter("stride_bytes", stride_bytes, format_args!("at least {row}")));
+        }
+        let short = || Error::parameter("stride_bytes", stride_bytes, "a stride that fits the address space");
+        let above = stride_bytes.checked_mul(size.height as usize - 1).ok_or_else(short)?;
+        let expected = above.checked_add(row).ok_or_else(short)?;
+        if data.len() < expected {
+            return Err(Error::Length { what: "frame data", found: data.len(), expected });
+        }
+        Ok(Self { size, format, stride_bytes, data })
+    }
+
+    /// Width and height.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// How a pixel is stored.
+    pub fn format(&self) -> PixelFormat {
+        self.format
+    }
+
+    /// The bytes of row `y`, without what lies between the rows.
+    ///
+    /// # Panics
+    /// If `y` is not below the height.
+    pub fn row(&self, y: u32) -> &'a [u8] {
+        assert!(y < self.size.height, "row {y} of a frame of {}", self.size);
+        let start = y as usize * self.stride_bytes;
+        &self.data[start..start + self.size.width as usize * self.format.bytes()]
+    }
+}
+
+/// A picture that owns its bytes, rows without gaps: what the file readers return.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Width and height.
+    pub size: Size,
+    /// How a pixel is stored.
+    pub format: PixelFormat,
+    /// `size.pixels() * format.bytes()` bytes.
+    pub data: Vec<u8>,
+}
+
+impl Image {
+    /// The picture as a borrowed frame.
+    ///
+    /// # Errors
+    /// As [`Frame::new`], if the fields contradict each other.
+    pub fn frame(&self) -> Result<Frame<'_>> {
+        Frame::new(self.size, self.format, &self.data)
+    }
+}
+
+/// A plane of one `f32` a pixel, rows without gaps: a certainty, a confidence, a depth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Width and height.
+    pub size: Size,
+    /// `size.pixels()` values, row by row.
+    pub data: Vec<f32>,
+}
+
+impl Plane {
+    /// Checks that size and data agree.
+    pub fn validate(&self) -> Result<()> {
+        self.size.validate()?;
+        let expected = self.size.pixels();
+        if self.data.len() != expected {
+            return Err(Error::Length { what: "plane data", found: self.data.len(), expected });
+        }
+        Ok(())
+    }
+}
+
+/// What an unknown flow component is written as. Everything over 1e9 in magnitude, and NaN, reads as unknown.
+pub const UNKNOWN_FLOW: f32 = 1.666_667e9;
+
+/// Displacements in pixels from one frame to the next: x to the right, y down, rows without gaps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlowField {
+    /// Width and height.
+    pub size: Size,
+    /// `size.pixels()` pairs `[u, v]`, row by row.
+    pub data: Vec<[f32; 2]>,
+}
+
+impl FlowField {
+    /// Checks that size and data agree.
+    pub fn validate(&self) -> Result<()> {
+        self.size.validate()?;
+        let expected = self.size.pixels();
+        if self.data.len() != expected {
+            return Err(Error::Length { what: "flow data", found: self.data.len(), expected });
+        }
+        Ok(())
+    }
+
+    /// Whether a displacement is known: finite, and no component over 1e9 in magnitude (the Middlebury convention).
+    pub fn is_known(flow: [f32; 2]) -> bool {
+        flow.iter().all(|c| c.abs() <= 1e9)
+    }
+}

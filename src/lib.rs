@@ -1,0 +1,6 @@
+//! Dense optical flow for vehicles that fly cameras.
+
+pub mod error;
+pub mod frame;
+
+pub use error::{Error, Result};
