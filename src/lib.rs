@@ -1,6 +1,12 @@
 //! Dense optical flow for vehicles that fly cameras.
 
+pub mod cpu;
 pub mod error;
+pub mod flow;
 pub mod frame;
+pub mod gpu;
+pub mod kernel;
+pub mod kernels;
+pub mod plan;
 
 pub use error::{Error, Result};

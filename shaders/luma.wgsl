@@ -1,0 +1,47 @@
+// Brightness of a frame's pixels, as f32.
+
+struct Params {
+    width: u32,
+    height: u32,
+    row_words: u32, // u32 words from one row to the next
+    format: u32,    // 0 gray8, 1 gray16, 2 rgb8, 3 rgba8
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> frame: array<u32>;
+@group(0) @binding(2) var<storage, read_write> gray: array<vec4f>;
+
+const SPAN = vec2u(4u, 1u);
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let x0 = id.x * SPAN.x;
+    if x0 >= params.width || id.y >= params.height {
+        return;
+    }
+    let last = params.width - 1u;
+    gray[id.y * ((params.width + 3u) / 4u) + id.x] = vec4f(
+        pixel(x0, id.y),
+        pixel(min(x0 + 1u, last), id.y),
+        pixel(min(x0 + 2u, last), id.y),
+        pixel(min(x0 + 3u, last), id.y),
+    );
+}
+
+fn byte(offset: u32) -> u32 {
+    return (frame[offset / 4u] >> (8u * (offset % 4u))) & 0xffu;
+}
+
+fn pixel(x: u32, y: u32) -> f32 {
+    let row = 4u * params.row_words * y;
+    switch params.format {
+        case 0u: { return f32(byte(row + x)); }
+        case 1u: { return f32(byte(row + 2u * x) + 256u * byte(row + 2u * x + 1u)); }
+        case 2u: { return luma(row + 3u * x); }
+        default: { return luma(row + 4u * x); }
+    }
+}
+
+fn luma(offset: u32) -> f32 {
+    return f32((9798u * byte(offset) + 19235u * byte(offset + 1u) + 3735u * byte(offset + 2u) + 16384u) >> 15u);
+}

@@ -1,0 +1,154 @@
+//! What is computed of one frame alone: its pyramid, and each level's polynomial expansion.
+
+use super::Farneback;
+use crate::flow::levels::Level;
+use crate::frame::{PixelFormat, Size};
+use crate::kernels::tables::{self, Applicability};
+use crate::kernels::{binomial, expansion_x, expansion_y, luma, resample_x, resample_y};
+use crate::plan::{BufId, Bufs, Shape, Step};
+
+/// Where a level's expansion lies: `f(x) ≈ xᵀA x + bᵀx + c`.
+#[derive(Clone, Copy)]
+pub(super) struct Expansion {
+    /// b_x, b_y, A_xx, A_yy of each pixel.
+    pub(super) quad: BufId,
+    /// 2 A_xy of each pixel.
+    pub(super) cross_term: BufId,
+}
+
+/// The buffers of this part of the plan.
+pub(super) struct Expansions {
+    /// The frame's bytes.
+    pub(super) frame: BufId,
+    /// Of each level, finest first, for both parities.
+    pub(super) levels: Vec<[Expansion; 2]>,
+    size: Size,
+    format: PixelFormat,
+    radius: u32,
+    applicability: Applicability,
+    weights: BufId,
+    gray: BufId,
+    columns: BufId,
+    image: BufId,
+    moments: BufId,
+    reductions: Vec<Reduction>,
+}
+
+/// How the full picture is read on one level.
+struct Reduction {
+    level: Level,
+    gauss: BufId,
+    place_x: BufId,
+    place_y: BufId,
+}
+
+impl Expansions {
+    pub(super) fn new(
+        bufs: &mut Bufs,
+        config: &Farneback,
+        size: Size,
+        format: PixelFormat,
+        levels: &[Level],
+    ) -> Self {
+        let applicability = tables::applicability(config.poly_n, config.poly_sigma);
+        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, parity: &str| Expansion {
+            quad: bufs.computed(format!("quad, level {k}, {parity} frames"), Shape::quads(level.size)),
+            cross_term: bufs
+                .computed(format!("cross term, level {k}, {parity} frames"), Shape::planar(level.size, 1)),
+        };
+        Self {
+            frame: bufs.input("frame", luma::row_words(size, format) * size.height as usize),
+            levels: levels
+                .iter()
+                .enumerate()
+                .map(|(k, level)| ["even", "odd"].map(|parity| expansion(bufs, k, level, parity)))
+                .collect(),
+            size,
+            format,
+            radius: config.poly_n,
+            weights: bufs.constant("applicability", applicability.weights.clone()),
+            applicability,
+            gray: bufs.computed("gray", Shape::planar(size, 1)),
+            columns: bufs.computed("smoothed columns", Shape::planar(size, 1)),
+            image: bufs.computed("level's image", Shape::planar(size, 1)),
+            moments: bufs.computed("moments", Shape::planar(size, 3)),
+            reductions: (levels.iter().enumerate().skip(1))
+                .map(|(k, &level)| Reduction {
+                    level,
+                    gauss: bufs
+                        .constant(format!("Gaussian, level {k}"), tables::gauss(level.sigma, level.taps)),
+                    place_x: bufs
+                        .constant(format!("columns, level {k}"), tables::place(size.width, level.size.width)),
+                    place_y: bufs
+                        .constant(format!("rows, level {k}"), tables::place(size.height, level.size.height)),
+                })
+                .collect(),
+        }
+    }
+
+    /// The steps for a frame of this parity.
+    pub(super) fn steps(&self, parity: usize) -> Vec<Step> {
+        let gray = Shape::planar(self.size, 1);
+        let mut steps = vec![
+            Step::new(
+                &luma::KERNEL,
+                "frame",
+                luma::Params::new(self.size, self.format),
+                &[self.frame],
+                &[(self.gray, gray)],
+            ),
+            Step::new(
+                &binomial::KERNEL,
+                "level 0",
+                binomial::Params::new(self.size),
+                &[self.gray],
+                &[(self.image, gray)],
+            ),
+        ];
+        self.expand(&mut steps, 0, self.size, parity);
+        for (i, reduction) in self.reductions.iter().enumerate() {
+            self.reduce(&mut steps, i + 1, reduction);
+            self.expand(&mut steps, i + 1, reduction.level.size, parity);
+        }
+        steps
+    }
+
+    /// The full picture, smoothed and read at a level's pixels.
+    fn reduce(&self, steps: &mut Vec<Step>, k: usize, reduction: &Reduction) {
+        let Size { width, height } = reduction.level.size;
+        let taps = reduction.level.taps;
+        steps.push(Step::new(
+            &resample_y::KERNEL,
+            format!("level {k}"),
+            resample_y::Params { width: self.size.width, height, in_height: self.size.height, taps },
+            &[self.gray, reduction.gauss, reduction.place_y],
+            &[(self.columns, Shape::planar(Size::new(self.size.width, height), 1))],
+        ));
+        steps.push(Step::new(
+            &resample_x::KERNEL,
+            format!("level {k}"),
+            resample_x::Params { width, height, in_width: self.size.width, taps },
+            &[self.columns, reduction.gauss, reduction.place_x],
+            &[(self.image, Shape::planar(reduction.level.size, 1))],
+        ));
+    }
+
+    /// The polynomial expansion of a level's image.
+    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, parity: usize) {
+        let Expansion { quad, cross_term } = self.levels[k][parity];
+        steps.push(Step::new(
+            &expansion_y::KERNEL,
+            format!("level {k}"),
+            expansion_y::Params { width: size.width, height: size.height, radius: self.radius },
+            &[self.image, self.weights],
+            &[(self.moments, Shape::planar(size, 3))],
+        ));
+        steps.push(Step::new(
+            &expansion_x::KERNEL,
+            format!("level {k}"),
+            expansion_x::Params::new(size, self.radius, &self.applicability),
+            &[self.moments, self.weights],
+            &[(quad, Shape::quads(size)), (cross_term, Shape::planar(size, 1))],
+        ));
+    }
+}

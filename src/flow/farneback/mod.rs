@@ -1,0 +1,129 @@
+//! Pyramidal Farnebäck flow, with OpenCV's semantics to the last border pixel.
+
+mod expansion;
+mod motion;
+
+use expansion::Expansions;
+use motion::Motion;
+
+use crate::error::{Error, Result};
+use crate::flow::levels::levels;
+use crate::frame::{PixelFormat, Size};
+use crate::plan::{Bufs, Plan, Shape};
+
+/// The window over which a pixel's neighbours are taken to move alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// All neighbours count the same.
+    Box,
+    /// Near neighbours count more; the standard deviation is `0.3 · (winsize / 2)` pixels.
+    Gaussian,
+}
+
+/// Parameters of pyramidal Farnebäck flow.
+///
+/// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`. The source is G. Farnebäck, Two-frame
+/// motion estimation based on polynomial expansion, SCIA 2003.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Farneback {
+    /// A level's size against the next finer one, in (0, 1).
+    pub pyr_scale: f64,
+    /// Levels beside the full picture, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
+    pub levels: u32,
+    /// Width of the window in pixels, 2 to 1024. An even one reaches as far as the next odd one.
+    pub winsize: u32,
+    /// Iterations on each level, 1 to 1000.
+    pub iterations: u32,
+    /// Radius of the polynomial expansion's neighbourhood in pixels, 1 to 32. Usual are 5 and 7.
+    pub poly_n: u32,
+    /// Standard deviation of the expansion's Gaussian in pixels, 0 to 100; 0 stands for `0.3 · poly_n`.
+    pub poly_sigma: f64,
+    /// The window's shape.
+    pub window: Window,
+    /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
+    pub initial_flow: bool,
+}
+
+impl Default for Farneback {
+    fn default() -> Self {
+        Self {
+            pyr_scale: 0.5,
+            levels: 3,
+            winsize: 15,
+            iterations: 3,
+            poly_n: 5,
+            poly_sigma: 1.2,
+            window: Window::Box,
+            initial_flow: false,
+        }
+    }
+}
+
+impl Farneback {
+    /// Half the default's work, for slow computers.
+    pub fn fast() -> Self {
+        Self { iterations: 1, winsize: 13, ..Self::default() }
+    }
+
+    /// Three times the default's work, for recorded frames.
+    pub fn accurate() -> Self {
+        Self { levels: 5, winsize: 13, iterations: 10, poly_sigma: 1.1, ..Self::default() }
+    }
+
+    /// Checks every parameter's range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], naming the first one that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.pyr_scale > 0.0 && self.pyr_scale < 1.0) {
+            return Err(Error::parameter("pyr_scale", self.pyr_scale, "a number above 0 and below 1"));
+        }
+        if !(0.0..=100.0).contains(&self.poly_sigma) {
+            return Err(Error::parameter("poly_sigma", self.poly_sigma, "0 to 100"));
+        }
+        for (name, value, low, high) in [
+            ("levels", self.levels, 0, 32),
+            ("winsize", self.winsize, 2, 1024),
+            ("iterations", self.iterations, 1, 1000),
+            ("poly_n", self.poly_n, 1, 32),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// The plan for frames of this size and format.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a parameter or size that is out of range.
+    pub fn plan(&self, size: Size, format: PixelFormat) -> Result<Plan> {
+        self.validate()?;
+        size.validate()?;
+        let levels = levels(size, self.pyr_scale, self.levels);
+        let mut bufs = Bufs::default();
+        let first = bufs.computed("flow", Shape::planar(size, 2));
+        let second = if self.initial_flow {
+            bufs.computed("flow of odd frames", Shape::planar(size, 2))
+        } else {
+            first
+        };
+        let flow = [first, second];
+        let expansions = Expansions::new(&mut bufs, self, size, format, &levels);
+        let motion = Motion::new(&mut bufs, self, &levels);
+        let plan = Plan {
+            size,
+            ingest: [0, 1].map(|parity| expansions.steps(parity)),
+            pair: [0, 1].map(|parity| motion.steps(&expansions, flow, parity)),
+            frame: expansions.frame,
+            certainty: None,
+            flow,
+            initial_flow: self.initial_flow,
+            confidence: None,
+            bufs: bufs.finish(),
+        };
+        plan.validate()?;
+        Ok(plan)
+    }
+}

@@ -1,0 +1,183 @@
+//! What is computed of two frames: on each level, coarse to fine, the equations, their average and their solution.
+
+use super::expansion::{Expansion, Expansions};
+use super::{Farneback, Window};
+use crate::flow::levels::Level;
+use crate::kernels::{area, matrices, solve, tables, upsample, window_y};
+use crate::plan::{BufId, Bufs, Shape, Step};
+
+/// The buffers of this part of the plan.
+pub(super) struct Motion {
+    levels: Vec<MotionLevel>,
+    pyr_scale: f64,
+    iterations: u32,
+    radius: u32,
+    window: BufId,
+    equations: BufId,
+    columns: BufId,
+    start: Start,
+}
+
+/// One level's flow and how the coarser level's is read.
+struct MotionLevel {
+    level: Level,
+    /// The finest level's flow is the plan's.
+    flow: Option<BufId>,
+    place: Option<[BufId; 2]>,
+}
+
+/// What the coarsest level begins with.
+enum Start {
+    /// No motion.
+    Zero(BufId),
+    /// The given flow, read by these covers.
+    Given([BufId; 2]),
+}
+
+impl Motion {
+    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level]) -> Self {
+        let finest = levels[0].size;
+        let coarsest = levels[levels.len() - 1].size;
+        let start = if config.initial_flow {
+            Start::Given([
+                bufs.constant("columns of the given flow", tables::cover(finest.width, coarsest.width)),
+                bufs.constant("rows of the given flow", tables::cover(finest.height, coarsest.height)),
+            ])
+        } else {
+            Start::Zero(bufs.constant("no motion", vec![0.0; Shape::planar(coarsest, 2).len()]))
+        };
+        let motion_level = |(k, &level): (usize, &Level)| MotionLevel {
+            level,
+            flow: (k > 0).then(|| bufs.computed(format!("flow, level {k}"), Shape::planar(level.size, 2))),
+            place: levels.get(k + 1).map(|coarser| {
+                [
+                    bufs.constant(
+                        format!("columns of level {}", k + 1),
+                        tables::place(coarser.size.width, level.size.width),
+                    ),
+                    bufs.constant(
+                        format!("rows of level {}", k + 1),
+                        tables::place(coarser.size.height, level.size.height),
+                    ),
+                ]
+            }),
+        };
+        Self {
+            levels: levels.iter().enumerate().map(motion_level).collect(),
+            pyr_scale: config.pyr_scale,
+            iterations: config.iterations,
+            radius: config.winsize / 2,
+            window: bufs
+                .constant("window", tables::window(config.winsize, config.window == Window::Gaussian)),
+            equations: bufs.computed("equations", Shape::planar(finest, 5)),
+            columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
+            start,
+        }
+    }
+
+    /// The steps for a frame of this parity and the one before.
+    pub(super) fn steps(&self, expansions: &Expansions, flow: [BufId; 2], parity: usize) -> Vec<Step> {
+        let mut steps = Vec::new();
+        let mut coarser: Option<(BufId, Level)> = None;
+        for (k, level) in self.levels.iter().enumerate().rev() {
+            let own = level.flow.unwrap_or(flow[parity]);
+            let begin = match (coarser, &self.start) {
+                (Some((flow, of)), _) => {
+                    steps.push(self.refine(k, level, flow, of, own));
+                    own
+                }
+                (None, Start::Given(cover)) => {
+                    steps.push(self.reduce(k, level, flow[1 - parity], *cover, own));
+                    own
+                }
+                (None, Start::Zero(zero)) => *zero,
+            };
+            let [even, odd] = expansions.levels[k];
+            let pair = if parity == 1 { [even, odd] } else { [odd, even] };
+            for i in 0..self.iterations {
+                let from = if i == 0 { begin } else { own };
+                self.iterate(
+                    &mut steps,
+                    format!("level {k}, iteration {}", i + 1),
+                    level.level,
+                    pair,
+                    from,
+                    own,
+                );
+            }
+            coarser = Some((own, level.level));
+        }
+        steps
+    }
+
+    /// The coarser level's flow as a beginning.
+    fn refine(&self, k: usize, level: &MotionLevel, coarse: BufId, of: Level, flow: BufId) -> Step {
+        let size = level.level.size;
+        let [place_x, place_y] = level.place.unwrap_or_else(|| unreachable!("a coarser level was computed"));
+        Step::new(
+            &upsample::KERNEL,
+            format!("level {k}"),
+            upsample::Params {
+                width: size.width,
+                height: size.height,
+                in_width: of.size.width,
+                in_height: of.size.height,
+                scale: (1.0 / self.pyr_scale) as f32,
+            },
+            &[coarse, place_x, place_y],
+            &[(flow, Shape::planar(size, 2))],
+        )
+    }
+
+    /// A given flow as a beginning.
+    fn reduce(&self, k: usize, level: &MotionLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
+        let (size, finest) = (level.level.size, self.levels[0].level.size);
+        Step::new(
+            &area::KERNEL,
+            format!("level {k}"),
+            area::Params {
+                width: size.width,
+                height: size.height,
+                in_width: finest.width,
+                in_height: finest.height,
+                scale: level.level.scale as f32,
+            },
+            &[given, x, y],
+            &[(flow, Shape::planar(size, 2))],
+        )
+    }
+
+    fn iterate(
+        &self,
+        steps: &mut Vec<Step>,
+        label: String,
+        level: Level,
+        [first, second]: [Expansion; 2],
+        from: BufId,
+        flow: BufId,
+    ) {
+        let (width, height) = (level.size.width, level.size.height);
+        let five = Shape::planar(level.size, 5);
+        steps.push(Step::new(
+            &matrices::KERNEL,
+            label.clone(),
+            matrices::Params { width, height },
+            &[first.quad, first.cross_term, second.quad, second.cross_term, from],
+            &[(self.equations, five)],
+        ));
+        steps.push(Step::new(
+            &window_y::KERNEL,
+            label.clone(),
+            window_y::Params { width, height, radius: self.radius },
+            &[self.equations, self.window],
+            &[(self.columns, five)],
+        ));
+        steps.push(Step::new(
+            &solve::KERNEL,
+            label,
+            solve::Params { width, height, radius: self.radius },
+            &[self.columns, self.window],
+            &[(flow, Shape::planar(level.size, 2))],
+        ));
+    }
+}

@@ -1,0 +1,7 @@
+//! Estimators of optical flow. Each one builds a [`Plan`](crate::plan::Plan) and reads like its paper.
+
+mod farneback;
+mod levels;
+
+pub use farneback::{Farneback, Window};
+pub use levels::{Level, levels};

@@ -1,0 +1,105 @@
+//! Finding an adapter, and saying which one it is.
+
+use std::fmt;
+
+use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Instance};
+
+use crate::error::{Error, Result};
+
+/// Which adapter to take.
+#[derive(Clone, Debug, Default)]
+pub struct GpuOptions {
+    /// Part of the adapter's name, upper or lower case; none for the best one there is.
+    pub adapter: Option<String>,
+    /// Whether an adapter that computes on the CPU, such as lavapipe, may be taken without being named.
+    ///
+    /// Off by default: such an adapter is slower than the CPU executor.
+    pub allow_software: bool,
+}
+
+/// What is known of an adapter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterName {
+    /// The device's name, as its driver gives it.
+    pub name: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// The interface by which it is reached, for example `Vulkan`.
+    pub backend: String,
+    /// Whether it computes on the CPU.
+    pub software: bool,
+}
+
+impl AdapterName {
+    pub(crate) fn new(info: &AdapterInfo) -> Self {
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        Self {
+            name: info.name.clone(),
+            driver: driver.trim().to_owned(),
+            backend: format!("{:?}", info.backend),
+            software: info.device_type == DeviceType::Cpu,
+        }
+    }
+}
+
+impl fmt::Display for AdapterName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.software { ", computes on the CPU" } else { "" };
+        write!(f, "{} ({}, {}{kind})", self.name, self.backend, self.driver)
+    }
+}
+
+/// Every adapter of this machine.
+pub fn adapters() -> Vec<Adapter> {
+    pollster::block_on(instance().enumerate_adapters(Backends::all()))
+}
+
+pub(super) fn instance() -> Instance {
+    Instance::new(wgpu::InstanceDescriptor {
+        backends: Backends::all(),
+        // Validation layers are for those who write this crate, and are not everywhere.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    })
+}
+
+/// Chooses an adapter: one that is named, or the fastest kind there is.
+///
+/// # Errors
+/// [`Error::NoAdapter`], with what is there and what to do.
+pub(super) fn choose(options: &GpuOptions) -> Result<Adapter> {
+    let mut found = adapters();
+    let names: Vec<String> =
+        found.iter().map(|adapter| AdapterName::new(&adapter.get_info()).to_string()).collect();
+    let fail = |reason: String| Err(Error::NoAdapter { reason });
+    if found.is_empty() {
+        return fail(
+            "no Vulkan driver answers; install the GPU's driver, or lavapipe to compute on the CPU \
+             (Debian: apt-get install mesa-vulkan-drivers libvulkan1)"
+                .to_owned(),
+        );
+    }
+    if let Some(wanted) = &options.adapter {
+        let wanted_lower = wanted.to_lowercase();
+        return match names.iter().position(|name| name.to_lowercase().contains(&wanted_lower)) {
+            Some(i) => Ok(found.swap_remove(i)),
+            None => fail(format!("none is called {wanted}; there are: {}", names.join("; "))),
+        };
+    }
+    let rank = |adapter: &Adapter| match adapter.get_info().device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    };
+    found.sort_by_key(rank);
+    let best = found.swap_remove(0);
+    if rank(&best) == 4 && !options.allow_software {
+        return fail(format!(
+            "only adapters that compute on the CPU are there ({}); name one to use it, or use the CPU backend",
+            names.join("; ")
+        ));
+    }
+    Ok(best)
+}

@@ -1,0 +1,264 @@
+//! A plan's buffers, pipelines and bind groups on a device, made once and replayed frame by frame.
+
+use std::collections::HashMap;
+
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, ComputePass, ComputePipeline};
+
+use super::{Gpu, reflect};
+use crate::error::{Error, Result};
+use crate::kernel::Kernel;
+use crate::plan::{BufId, Content, Plan, Step};
+
+/// A plan on a device.
+pub struct GpuExecutor {
+    gpu: Gpu,
+    bufs: Vec<Buffer>,
+    ingest: [Vec<Dispatch>; 2],
+    pair: [Vec<Dispatch>; 2],
+}
+
+/// A step, ready to be replayed.
+struct Dispatch {
+    pipeline: ComputePipeline,
+    bind_group: BindGroup,
+    workgroups: [u32; 2],
+}
+
+impl Dispatch {
+    fn record(&self, pass: &mut ComputePass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.dispatch_workgroups(self.workgroups[0], self.workgroups[1], 1);
+    }
+}
+
+/// A pipeline and how much a workgroup of it covers.
+#[derive(Clone)]
+struct Pipeline {
+    pipeline: ComputePipeline,
+    shape: reflect::Shape,
+}
+
+impl Pipeline {
+    fn new(gpu: &Gpu, kernel: &Kernel) -> Result<Self> {
+        let shape = reflect::reflect(kernel)?;
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(kernel.name),
+            source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(kernel.name),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Ok(Self { pipeline, shape })
+    }
+
+    fn dispatch(
+        &self,
+        gpu: &Gpu,
+        label: &str,
+        params: wgpu::BindingResource<'_>,
+        buffers: &[&Buffer],
+        [columns, rows]: [u32; 2],
+    ) -> Dispatch {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = std::iter::once(params)
+            .chain(buffers.iter().map(|buffer| buffer.as_entire_binding()))
+            .enumerate()
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
+            .collect();
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(label),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        // The surplus of a row is computed too: it repeats the row's last pixel.
+        let workgroups = self.shape.workgroups(columns.next_multiple_of(4), rows);
+        Dispatch { pipeline: self.pipeline.clone(), bind_group, workgroups }
+    }
+}
+
+impl GpuExecutor {
+    /// Makes the plan's buffers, pipelines and bind groups.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] if a buffer is over the device's limits, [`Error::Kernel`] if a shader does not fit its
+    /// kernel, [`Error::DeviceLost`] if the device was lost.
+    pub fn new(gpu: &Gpu, plan: &Plan) -> Result<Self> {
+        check_limits(gpu, plan)?;
+        let bufs: Vec<Buffer> = plan
+            .bufs
+            .iter()
+            .map(|buf| match &buf.content {
+                Content::Constant(values) => storage(gpu, &buf.name, values),
+                Content::Input | Content::Computed => gpu.device.create_buffer(&BufferDescriptor {
+                    label: Some(&buf.name),
+                    size: 4 * buf.len as u64,
+                    usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                }),
+            })
+            .collect();
+        let mut pipelines = HashMap::new();
+        let mut dispatches = |steps: &[Step]| dispatches(gpu, steps, &bufs, &mut pipelines);
+        let ingest = [dispatches(&plan.ingest[0])?, dispatches(&plan.ingest[1])?];
+        let pair = [dispatches(&plan.pair[0])?, dispatches(&plan.pair[1])?];
+        Ok(Self { gpu: gpu.clone(), bufs, ingest, pair })
+    }
+
+    /// A buffer of the plan on the device.
+    pub fn buf(&self, id: BufId) -> &Buffer {
+        &self.bufs[id.index()]
+    }
+
+    /// Records what is to be computed of a frame alone.
+    pub fn record_ingest(&self, pass: &mut ComputePass<'_>, parity: usize) {
+        self.ingest[parity].iter().for_each(|dispatch| dispatch.record(pass));
+    }
+
+    /// Records what is to be computed of a frame and the one before.
+    pub fn record_pair(&self, pass: &mut ComputePass<'_>, parity: usize) {
+        self.pair[parity].iter().for_each(|dispatch| dispatch.record(pass));
+    }
+
+    /// Writes a buffer from the host, at once. For tests and comparisons: a stream uses mapped buffers.
+    pub fn write(&self, id: BufId, values: &[f32]) {
+        self.gpu.queue.write_buffer(self.buf(id), 0, bytemuck::cast_slice(values));
+    }
+
+    /// Reads the first `len` values of a buffer, and waits for them. For tests and comparisons.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`] if the device was lost.
+    pub fn read(&self, id: BufId, len: usize) -> Result<Vec<f32>> {
+        read(&self.gpu, self.buf(id), len)
+    }
+
+    /// Runs one step of the plan's `ingest` and `pair` list and waits for it. For comparisons.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`] if the device was lost.
+    pub fn run(&self, parity: usize, index: usize) -> Result<()> {
+        let dispatch = self.ingest[parity].iter().chain(&self.pair[parity]).nth(index);
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if let Some(dispatch) = dispatch {
+            dispatch.record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.finish()
+    }
+}
+
+fn dispatches(
+    gpu: &Gpu,
+    steps: &[Step],
+    bufs: &[Buffer],
+    pipelines: &mut HashMap<&'static str, Pipeline>,
+) -> Result<Vec<Dispatch>> {
+    let align = gpu.limits().min_uniform_buffer_offset_alignment as usize;
+    let mut bytes = Vec::new();
+    let mut offsets = Vec::new();
+    for step in steps {
+        bytes.resize(bytes.len().next_multiple_of(align), 0);
+        offsets.push(bytes.len() as u64);
+        bytes.extend(&step.params);
+    }
+    let params = gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("params"),
+        contents: &bytes,
+        usage: BufferUsages::UNIFORM,
+    });
+    steps
+        .iter()
+        .zip(offsets)
+        .map(|(step, offset)| {
+            let pipeline = match pipelines.entry(step.kernel.name) {
+                std::collections::hash_map::Entry::Occupied(entry) => entry.into_mut(),
+                std::collections::hash_map::Entry::Vacant(entry) => {
+                    entry.insert(Pipeline::new(gpu, step.kernel)?)
+                }
+            };
+            let buffers: Vec<&Buffer> = (step.inputs.iter())
+                .chain(step.outputs.iter().map(|(id, _)| id))
+                .map(|id| &bufs[id.index()])
+                .collect();
+            let params = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &params,
+                offset,
+                size: std::num::NonZero::new(step.params.len() as u64),
+            });
+            let label = format!("{}, {}", step.kernel.name, step.label);
+            Ok(pipeline.dispatch(gpu, &label, params, &buffers, [step.extent.width, step.extent.height]))
+        })
+        .collect()
+}
+
+fn check_limits(gpu: &Gpu, plan: &Plan) -> Result<()> {
+    let limits = gpu.limits();
+    let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+    match plan.bufs.iter().find(|buf| 4 * buf.len as u64 > limit) {
+        None => Ok(()),
+        Some(buf) => Err(Error::TooLarge {
+            what: buf.name.clone(),
+            size: plan.size,
+            needed: 4 * buf.len as u64,
+            limit,
+            adapter: gpu.adapter().to_string(),
+        }),
+    }
+}
+
+fn storage(gpu: &Gpu, label: &str, values: &[f32]) -> Buffer {
+    gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents: bytemuck::cast_slice(values),
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+    })
+}
+
+fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
+    let size = 4 * len as u64;
+    let target = gpu.device.create_buffer(&BufferDescriptor {
+        label: Some("read"),
+        size,
+        usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &target, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    // Whether mapping worked shows when the range is asked for.
+    target.map_async(wgpu::MapMode::Read, .., |_| {});
+    gpu.finish()?;
+    let range = target.get_mapped_range(..).map_err(|error| gpu.lost_error(error.to_string()))?;
+    Ok(bytemuck::pod_collect_to_vec(&range))
+}
+
+pub(super) fn run_alone(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    params: &[u8],
+    inputs: &[&[f32]],
+    outputs: Vec<Vec<f32>>,
+    extent: [u32; 2],
+) -> Result<Vec<Vec<f32>>> {
+    let pipeline = Pipeline::new(gpu, kernel)?;
+    let params = gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("params"),
+        contents: params,
+        usage: BufferUsages::UNIFORM,
+    });
+    let inputs: Vec<Buffer> = inputs.iter().map(|values| storage(gpu, "input", values)).collect();
+    let outputs: Vec<(Buffer, usize)> =
+        outputs.iter().map(|values| (storage(gpu, "output", values), values.len())).collect();
+    let buffers: Vec<&Buffer> = inputs.iter().chain(outputs.iter().map(|(buffer, _)| buffer)).collect();
+    let dispatch = pipeline.dispatch(gpu, kernel.name, params.as_entire_binding(), &buffers, extent);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    dispatch.record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
+    gpu.queue.submit([encoder.finish()]);
+    outputs.into_iter().map(|(buffer, len)| read(gpu, &buffer, len)).collect()
+}

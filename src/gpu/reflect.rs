@@ -1,0 +1,198 @@
+//! What naga reads from a kernel's shader, and what it must find there. No GPU is needed for any of it.
+
+use naga::{AddressSpace, Expression, Function, GlobalVariable, Module, Statement, StorageAccess, TypeInner};
+
+use crate::error::{Error, Result};
+use crate::kernel::Kernel;
+
+/// Invocations of a workgroup that every GPU allows.
+const MAX_INVOCATIONS: u32 = 256;
+/// Storage buffers of a stage that every GPU allows.
+pub(super) const MAX_STORAGE_BUFFERS: usize = 8;
+
+/// What the host needs to know of a shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Invocations of a workgroup in x and y.
+    pub workgroup: [u32; 2],
+    /// Pixels of an invocation in x and y: the shader's constant `SPAN`.
+    pub span: [u32; 2],
+}
+
+impl Shape {
+    /// Workgroups for a picture of this many columns and rows.
+    pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 2] {
+        let count = |pixels: u32, axis: usize| pixels.div_ceil(self.workgroup[axis] * self.span[axis]);
+        [count(columns, 0), count(rows, 1)]
+    }
+}
+
+/// Parses and validates a kernel's shader and holds it against the kernel's Rust side.
+///
+/// Compared are the uniform struct (names, types, offsets, size), the bindings (names, order, kind, use), the workgroup
+/// (at most 256 invocations) and the loops (each one against a bound that the shader states).
+///
+/// # Errors
+/// [`Error::Kernel`], with everything that was found wrong.
+pub fn reflect(kernel: &Kernel) -> Result<Shape> {
+    let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
+    let module = naga::front::wgsl::parse_str(kernel.source)
+        .map_err(|error| fail(error.emit_to_string_with_path(kernel.source, kernel.name)))?;
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    let info = validator.validate(&module).map_err(|error| fail(error.emit_to_string(kernel.source)))?;
+
+    let mut problems = Vec::new();
+    let [entry] = module.entry_points.as_slice() else {
+        return Err(fail(format!("{} entry points, expected 1", module.entry_points.len())));
+    };
+    if entry.name != "main" {
+        problems.push(format!("entry point is {}, expected main", entry.name));
+    }
+    let [x, y, z] = entry.workgroup_size;
+    if z != 1 || x.saturating_mul(y) > MAX_INVOCATIONS {
+        problems.push(format!(
+            "workgroup is {x}×{y}×{z}, expected at most {MAX_INVOCATIONS} invocations and z = 1"
+        ));
+    }
+    let usage = info.get_entry_point(0);
+    check_bindings(kernel, &module, |handle| !usage[handle].is_empty(), &mut problems);
+    check_loops(&module, &entry.function, "main", &mut problems);
+    for (_, function) in module.functions.iter() {
+        check_loops(&module, function, function.name.as_deref().unwrap_or("a function"), &mut problems);
+    }
+    let span = span(&module).unwrap_or_else(|| {
+        problems.push("constant SPAN is missing, expected a vec2u of pixels of an invocation".to_owned());
+        [1, 1]
+    });
+    if problems.is_empty() { Ok(Shape { workgroup: [x, y], span }) } else { Err(fail(problems.join("; "))) }
+}
+
+fn check_bindings(
+    kernel: &Kernel,
+    module: &Module,
+    used: impl Fn(naga::Handle<GlobalVariable>) -> bool,
+    problems: &mut Vec<String>,
+) {
+    let mut bound: Vec<_> = module.global_variables.iter().filter(|(_, var)| var.binding.is_some()).collect();
+    bound.sort_by_key(|(_, var)| var.binding.map(|at| (at.group, at.binding)));
+    let read = AddressSpace::Storage { access: StorageAccess::LOAD };
+    let write = AddressSpace::Storage { access: StorageAccess::LOAD | StorageAccess::STORE };
+    let expected: Vec<(&str, AddressSpace)> = std::iter::once(("params", AddressSpace::Uniform))
+        .chain(kernel.inputs.iter().map(|name| (*name, read)))
+        .chain(kernel.outputs.iter().map(|name| (*name, write)))
+        .collect();
+    if kernel.inputs.len() + kernel.outputs.len() > MAX_STORAGE_BUFFERS {
+        problems.push(format!("more than {MAX_STORAGE_BUFFERS} storage buffers"));
+    }
+    if bound.len() != expected.len() {
+        problems.push(format!("{} bindings, expected {}", bound.len(), expected.len()));
+    }
+    for (i, ((handle, var), (name, space))) in bound.into_iter().zip(expected).enumerate() {
+        let found = var.name.as_deref().unwrap_or("without a name");
+        let at = var.binding.map(|at| (at.group, at.binding));
+        if found != name || var.space != space || at != Some((0, i as u32)) {
+            problems.push(format!(
+                "binding {at:?} is {found} ({:?}), expected {name} at {i} ({space:?})",
+                var.space
+            ));
+        }
+        if !used(handle) {
+            problems.push(format!("{found} is never used, so the deduced layout would drop it"));
+        }
+        if i == 0 {
+            check_params(kernel, module, var, problems);
+        }
+    }
+}
+
+fn check_params(kernel: &Kernel, module: &Module, var: &GlobalVariable, problems: &mut Vec<String>) {
+    let TypeInner::Struct { members, span } = &module.types[var.ty].inner else {
+        problems.push("params is not a struct".to_owned());
+        return;
+    };
+    if *span as usize != kernel.params.size {
+        problems.push(format!("params has {span} bytes in WGSL and {} in Rust", kernel.params.size));
+    }
+    let wgsl: Vec<_> = members
+        .iter()
+        .map(|m| {
+            (m.name.clone().unwrap_or_default(), m.offset as usize, type_name(&module.types[m.ty].inner))
+        })
+        .collect();
+    let rust: Vec<_> =
+        kernel.params.fields.iter().map(|f| (f.name.to_owned(), f.offset, f.ty.to_owned())).collect();
+    if wgsl != rust {
+        problems.push(format!("params is {wgsl:?} in WGSL and {rust:?} in Rust"));
+    }
+}
+
+fn type_name(inner: &TypeInner) -> String {
+    let scalar = |scalar: naga::Scalar| match scalar.kind {
+        naga::ScalarKind::Float => format!("f{}", 8 * scalar.width),
+        naga::ScalarKind::Uint => format!("u{}", 8 * scalar.width),
+        naga::ScalarKind::Sint => format!("i{}", 8 * scalar.width),
+        kind => format!("{kind:?}"),
+    };
+    match inner {
+        TypeInner::Scalar(s) => scalar(*s),
+        TypeInner::Vector { size, scalar: s } => format!("vec{}<{}>", *size as u8, scalar(*s)),
+        other => format!("{other:?}"),
+    }
+}
+
+/// Every loop must begin by comparing with something whose bound the shader states: a constant, or `min(…, CONSTANT)`.
+fn check_loops(module: &Module, function: &Function, name: &str, problems: &mut Vec<String>) {
+    let mut blocks = vec![&function.body];
+    while let Some(block) = blocks.pop() {
+        for statement in block.iter() {
+            match statement {
+                Statement::Loop { body, continuing, .. } => {
+                    if !body.iter().any(|s| leaves_at_bound(module, function, s)) {
+                        problems.push(format!("a loop in {name} has no stated bound: compare with a constant or min(…, CONSTANT)"));
+                    }
+                    blocks.extend([body, continuing]);
+                }
+                Statement::If { accept, reject, .. } => blocks.extend([accept, reject]),
+                Statement::Block(inner) => blocks.push(inner),
+                Statement::Switch { cases, .. } => blocks.extend(cases.iter().map(|case| &case.body)),
+                _ => {}
+            }
+        }
+    }
+}
+
+fn leaves_at_bound(module: &Module, function: &Function, statement: &Statement) -> bool {
+    let Statement::If { condition, reject, .. } = statement else { return false };
+    let leaves = reject.iter().any(|s| matches!(s, Statement::Break));
+    let Expression::Binary { op: naga::BinaryOperator::Less, right, .. } = function.expressions[*condition]
+    else {
+        return false;
+    };
+    let constant = |e: naga::Handle<Expression>| match function.expressions[e] {
+        Expression::Literal(_) => true,
+        Expression::Constant(c) => {
+            matches!(module.global_expressions[module.constants[c].init], Expression::Literal(_))
+        }
+        _ => false,
+    };
+    let bounded = match function.expressions[right] {
+        Expression::Math { fun: naga::MathFunction::Min, arg, arg1: Some(arg1), .. } => {
+            constant(arg) || constant(arg1)
+        }
+        _ => constant(right),
+    };
+    leaves && bounded
+}
+
+fn span(module: &Module) -> Option<[u32; 2]> {
+    let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("SPAN"))?;
+    let Expression::Compose { components, .. } = &module.global_expressions[constant.init] else {
+        return None;
+    };
+    let value = |i: usize| match module.global_expressions[*components.get(i)?] {
+        Expression::Literal(naga::Literal::U32(value)) if value > 0 => Some(value),
+        _ => None,
+    };
+    Some([value(0)?, value(1)?])
+}

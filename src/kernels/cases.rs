@@ -1,0 +1,121 @@
+//! Made-up pictures for the comparison of the two sides of a kernel.
+
+use crate::frame::Size;
+use crate::kernel::Case;
+
+/// What a made-up picture looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// One value everywhere.
+    Flat,
+    /// Independent random values: every sample matters.
+    Textured,
+    /// The ends of the legal range, side by side.
+    Extreme,
+    /// Textured, with one sample in fifty that is not a number.
+    Nan,
+}
+
+impl Fill {
+    /// All of them.
+    pub const ALL: &'static [Self] = &[Self::Flat, Self::Textured, Self::Extreme, Self::Nan];
+
+    /// The `i`-th value of a picture whose legal values are from `low` to `high`.
+    fn value(self, random: &mut Random, low: f32, high: f32) -> f32 {
+        let share = random.next();
+        match self {
+            Self::Flat => low + 0.7 * (high - low),
+            Self::Textured => low + share * (high - low),
+            Self::Extreme if share < 0.5 => low,
+            Self::Extreme => high,
+            Self::Nan if share < 0.02 => f32::NAN,
+            Self::Nan => low + share * (high - low),
+        }
+    }
+}
+
+/// A reproducible source of numbers in `0 ≤ x < 1` (xorshift, Marsaglia 2003).
+#[derive(Clone, Debug)]
+pub struct Random(u32);
+
+impl Random {
+    /// Begins anew; equal seeds give equal numbers.
+    pub fn new(seed: u32) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9) | 1)
+    }
+
+    /// The next number.
+    #[allow(clippy::should_implement_trait, reason = "it never ends, so an Option would be in the way")]
+    pub fn next(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        (self.0 >> 8) as f32 / (1 << 24) as f32
+    }
+}
+
+/// A picture of several channels with values from `low` to `high`, its rows' surplus filled as it should be.
+pub fn planes(size: Size, channels: usize, fill: Fill, [low, high]: [f32; 2], seed: u32) -> Vec<f32> {
+    let mut random = Random::new(seed);
+    let stride = size.stride();
+    let mut values = Vec::with_capacity(stride * channels * size.height as usize);
+    for _ in 0..channels * size.height as usize {
+        let start = values.len();
+        values.extend((0..size.width).map(|_| fill.value(&mut random, low, high)));
+        let last = values[values.len() - 1];
+        values.resize(start + stride, last);
+    }
+    values
+}
+
+/// A picture of four values a pixel, side by side in memory, each with its own range.
+pub fn quads(size: Size, fill: Fill, ranges: [[f32; 2]; 4], seed: u32) -> Vec<f32> {
+    let mut random = Random::new(seed);
+    let mut values = Vec::with_capacity(4 * size.stride() * size.height as usize);
+    for _ in 0..size.height {
+        let mut pixel = [0.0; 4];
+        for x in 0..size.stride() {
+            if x < size.width as usize {
+                pixel = ranges.map(|[low, high]| fill.value(&mut random, low, high));
+            }
+            values.extend(pixel);
+        }
+    }
+    values
+}
+
+/// One case a fill for kernels that read one gray picture, then tables. `rows` are the row lengths of the outputs.
+pub fn gray_cases(
+    size: Size,
+    fills: &[Fill],
+    params: &[u8],
+    tables: &[Vec<f32>],
+    rows: &[usize],
+    extent: Size,
+) -> Vec<Case> {
+    cases(fills, params, rows, extent, |fill| {
+        let mut inputs = vec![planes(size, 1, fill, [0.0, 65535.0], 7)];
+        inputs.extend(tables.iter().cloned());
+        inputs
+    })
+}
+
+/// One case a fill, its inputs as `inputs` makes them. `rows` are the row lengths of the outputs.
+pub fn cases(
+    fills: &[Fill],
+    params: &[u8],
+    rows: &[usize],
+    extent: Size,
+    inputs: impl Fn(Fill) -> Vec<Vec<f32>>,
+) -> Vec<Case> {
+    fills
+        .iter()
+        .map(|&fill| Case {
+            name: format!("{fill:?}").to_lowercase(),
+            params: params.to_vec(),
+            inputs: inputs(fill),
+            outputs: rows.iter().map(|row| row * extent.height as usize).collect(),
+            extent,
+        })
+        .collect()
+}

@@ -1,0 +1,135 @@
+//! Whether two results agree. Both sides of every kernel and both executors of a plan are held against each other here.
+
+use crate::kernel::Tolerance;
+
+/// What outputs are filled with before a kernel runs: not a number, and recognisable, so that a value that was never
+/// written is found even where not-a-number is the right answer.
+pub const POISON: f32 = f32::from_bits(0x7fc0_dead);
+
+/// How far two results lie apart.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// The largest difference; infinite where the two are not even of one kind.
+    pub max: f32,
+    /// The 99.9th percentile (nearest rank).
+    pub p999: f32,
+    /// The mean.
+    pub mean: f64,
+    /// Values compared.
+    pub count: usize,
+    /// Values beyond the bound.
+    pub breaches: usize,
+    /// The value that is furthest beyond the bound.
+    pub worst: Option<Breach>,
+}
+
+/// A value that lies beyond the bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Breach {
+    /// Where in the buffer.
+    pub index: usize,
+    /// The reference's value.
+    pub expected: f32,
+    /// The value found.
+    pub found: f32,
+    /// How far apart they may lie.
+    pub bound: f32,
+}
+
+/// Holds `found` against `expected`, value by value.
+///
+/// Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A
+/// [`POISON`] agrees with nothing, and a value that only one side has is beyond every bound.
+pub fn compare(expected: &[f32], found: &[f32], tolerance: Tolerance) -> Difference {
+    let count = expected.len().max(found.len());
+    let mut result = Difference { count, ..Difference::default() };
+    let mut differences = Vec::with_capacity(count);
+    let mut furthest = 0.0;
+    for index in 0..count {
+        let value = |side: &[f32]| side.get(index).copied().unwrap_or(POISON);
+        let (expected, found) = (value(expected), value(found));
+        let difference = difference(expected, found);
+        let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
+        let bound = tolerance.absolute + tolerance.relative * magnitude;
+        if !(difference <= bound) {
+            result.breaches += 1;
+            let excess = difference - bound;
+            if result.worst.is_none() || excess > furthest {
+                furthest = excess;
+                result.worst = Some(Breach { index, expected, found, bound });
+            }
+        }
+        differences.push(difference);
+    }
+    differences.sort_unstable_by(f32::total_cmp);
+    if let Some(max) = differences.last() {
+        result.max = *max;
+        result.p999 = differences[(count * 999).div_ceil(1000) - 1];
+        result.mean = differences.iter().map(|d| f64::from(*d)).sum::<f64>() / count as f64;
+    }
+    result
+}
+
+fn difference(expected: f32, found: f32) -> f32 {
+    let poisoned = |v: f32| v.to_bits() == POISON.to_bits();
+    if poisoned(expected) || poisoned(found) {
+        f32::INFINITY
+    } else if expected == found || (expected.is_nan() && found.is_nan()) {
+        0.0
+    } else {
+        let difference = (expected - found).abs();
+        if difference.is_nan() { f32::INFINITY } else { difference }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUND: Tolerance = Tolerance { absolute: 0.5, relative: 0.1, reason: "made up" };
+
+    fn breaches(expected: &[f32], found: &[f32]) -> usize {
+        compare(expected, found, BOUND).breaches
+    }
+
+    #[test]
+    fn accepts_what_is_within_the_bound() {
+        assert_eq!(breaches(&[10.0, -10.0, 0.0], &[11.5, -8.5, 0.5]), 0);
+        assert_eq!(breaches(&[f32::NAN, f32::INFINITY], &[-f32::NAN, f32::INFINITY]), 0);
+        assert_eq!(breaches(&[], &[]), 0);
+    }
+
+    #[test]
+    fn refuses_what_is_beyond_it() {
+        assert_eq!(breaches(&[10.0], &[11.6]), 1);
+        assert_eq!(breaches(&[10.0], &[8.4]), 1);
+        assert_eq!(breaches(&[0.0; 1000], &[[0.0; 999].as_slice(), &[0.6]].concat()), 1);
+    }
+
+    #[test]
+    fn refuses_not_a_number_against_a_number_either_way_round() {
+        assert_eq!(breaches(&[1.0], &[f32::NAN]), 1);
+        assert_eq!(breaches(&[f32::NAN], &[1.0]), 1);
+        assert_eq!(breaches(&[f32::INFINITY], &[f32::MAX]), 1);
+        assert_eq!(breaches(&[f32::INFINITY], &[f32::NEG_INFINITY]), 1);
+    }
+
+    #[test]
+    fn refuses_what_was_never_written_even_where_not_a_number_is_right() {
+        assert_eq!(breaches(&[f32::NAN], &[POISON]), 1);
+        assert_eq!(breaches(&[POISON], &[POISON]), 1);
+    }
+
+    #[test]
+    fn refuses_differing_lengths() {
+        assert_eq!(breaches(&[1.0, 2.0], &[1.0]), 1);
+        assert_eq!(breaches(&[1.0], &[1.0, 2.0]), 1);
+    }
+
+    #[test]
+    fn names_the_worst_place() {
+        let found = compare(&[0.0; 4], &[0.6, 9.0, 0.7, 0.0], BOUND);
+        let worst = found.worst.expect("three are beyond the bound");
+        assert_eq!((worst.index, worst.found, found.breaches, found.max), (1, 9.0, 3, 9.0));
+    }
+}

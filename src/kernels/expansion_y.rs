@@ -1,0 +1,66 @@
+//! Polynomial expansion, vertical half: a picture's columns against the applicability times 1, y and y².
+//!
+//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
+//! Gaussian applicability of his thesis (2002).
+
+use super::cases::{Fill, gray_cases};
+use super::rows::{Split, bands, clamp_index, dimensions, weighted_sum};
+use super::tables;
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel, params};
+
+params! {
+    /// Shape of the picture and of the neighbourhood.
+    struct Params {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The neighbourhood has `2 radius + 1` rows.
+        radius: u32,
+    }
+}
+
+kernel!(
+    "expansion_y" + ["image"],
+    reference(Params; level, applicability) -> (moments),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 0.5,
+        relative: 1e-5,
+        reason: "eleven products of up to 65535 · y² g, fused or not; Σ y g f cancels, so the absolute part is 2⁻²³ of \
+                 the products' sum",
+    },
+);
+
+/// `weights` interleaves four values a sample; this takes one of them out of each.
+#[inline(always)]
+pub(super) fn component(interleaved: &[f32], index: usize, out: &mut [f32]) {
+    for (out, four) in out.iter_mut().zip(interleaved.as_chunks::<4>().0) {
+        *out = four[index];
+    }
+}
+
+fn reference(p: &Params, level: &[f32], applicability: &[f32], moments: &mut [f32]) {
+    let (_, height, stride) = dimensions(p.width, p.height);
+    let radius = p.radius as isize;
+    let taps = 2 * p.radius as usize + 1;
+    let split = Split { scratch: taps, ..Split::rows_of(3 * stride) };
+    bands(moments, &mut [], split, #[inline(always)] |band| {
+        for channel in 0..3 {
+            component(applicability, channel, band.scratch);
+            for (i, rows) in band.out.chunks_exact_mut(3 * stride).enumerate() {
+                let first = (band.y0 + i) as isize - radius;
+                weighted_sum(&mut rows[channel * stride..][..stride], band.scratch, |k| {
+                    &level[clamp_index(first + k as isize, height) * stride..][..stride]
+                });
+            }
+        }
+    });
+}
+
+fn cases(size: Size) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, radius: 5 };
+    let weights = tables::applicability(5, 1.2).weights;
+    gray_cases(size, Fill::ALL, bytemuck::bytes_of(&params), &[weights], &[3 * size.stride()], size)
+}

@@ -1,0 +1,39 @@
+//! The kernels, one file each, and their registry.
+//!
+//! To add one: `shaders/foo.wgsl`, `src/kernels/foo.rs`, and the word `foo` in the list below. The shader's checks,
+//! its pipeline, a named test of GPU against CPU and a bench follow from the list.
+
+pub mod cases;
+pub mod compare;
+pub(crate) mod rows;
+pub mod tables;
+
+macro_rules! registry {
+    (($d:tt) $($kernel:ident),* $(,)?) => {
+        $(pub mod $kernel;)*
+
+        /// Every kernel.
+        pub static ALL: &[&crate::kernel::Kernel] = &[$(&$kernel::KERNEL),*];
+
+        /// Calls a macro with the names of all kernels, so that tests and benches are made from the one list.
+        #[macro_export]
+        macro_rules! for_each_kernel {
+            ($d call:ident) => { $d call! { $($kernel),* } };
+        }
+    };
+}
+
+registry!(
+    ($)
+    luma,
+    binomial,
+    resample_y,
+    resample_x,
+    expansion_y,
+    expansion_x,
+    upsample,
+    area,
+    matrices,
+    window_y,
+    solve,
+);

@@ -1,0 +1,105 @@
+//! Rows of the five channels averaged by a symmetric window, and the displacement that solves the averaged equations.
+//!
+//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3. The determinant is kept
+//! off zero by 10⁻³, as OpenCV does. What overflow leaves without a value counts as no motion, so that it cannot spread.
+
+use super::cases::{Fill, Random, cases as each_fill};
+use super::rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
+use super::tables;
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel, params};
+
+params! {
+    /// Shape of the picture and of the window.
+    struct Params {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The window has `2 radius + 1` columns.
+        radius: u32,
+    }
+}
+
+kernel!(
+    "solve" + ["image"],
+    reference(Params; columns, window) -> (flow),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 2e-4,
+        relative: 2e-4,
+        reason: "the determinant of averaged equations cancels: with eigenvalues in a ratio of up to some hundred, \
+                 some hundred roundings of each product",
+    },
+);
+
+fn reference(p: &Params, columns: &[f32], window: &[f32], flow: &mut [f32]) {
+    let (width, _, stride) = dimensions(p.width, p.height);
+    let radius = p.radius as usize;
+    let window = &window[..2 * radius + 1];
+    let extended = width + 2 * radius;
+    let split = Split { scratch: extended + 5 * width, ..Split::rows_of(2 * stride) };
+    bands(flow, &mut [], split, #[inline(always)] |band| {
+        let Band { y0, out, scratch, .. } = band;
+        let (extended, sums) = scratch.split_at_mut(extended);
+        for (i, rows) in out.chunks_exact_mut(2 * stride).enumerate() {
+            for (channel, sum) in sums.chunks_exact_mut(width).enumerate() {
+                extend_row(extended, &columns[(5 * (y0 + i) + channel) * stride..], width, radius);
+                weighted_sum(sum, window, |k| &extended[k..][..width]);
+            }
+            let [g_xx, g_xy, g_yy, h_x, h_y] = [0, 1, 2, 3, 4].map(|channel| &sums[channel * width..][..width]);
+            let (u, v) = rows.split_at_mut(stride);
+            for x in 0..width {
+                let scale = 1.0 / (g_xx[x] * g_yy[x] - g_xy[x] * g_xy[x] + 1e-3);
+                u[x] = known((g_yy[x] * h_x[x] - g_xy[x] * h_y[x]) * scale);
+                v[x] = known((g_xx[x] * h_y[x] - g_xy[x] * h_x[x]) * scale);
+            }
+            repeat_last(u, width);
+            repeat_last(v, width);
+        }
+    });
+}
+
+#[inline(always)]
+fn known(d: f32) -> f32 {
+    if d.abs() <= 1e9 { d } else { 0.0 }
+}
+
+/// Equations of a model whose two eigenvalues lie between the given bounds, for some displacement up to 8 px.
+fn cases(size: Size) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, radius: 6 };
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {
+        vec![equations(size, fill), tables::window(13, false)]
+    })
+}
+
+fn equations(size: Size, fill: Fill) -> Vec<f32> {
+    let mut random = Random::new(23);
+    let stride = size.stride();
+    let mut values = vec![0.0; 5 * stride * size.height as usize];
+    for row in values.chunks_exact_mut(5 * stride) {
+        for x in 0..size.width as usize {
+            let [angle, p, q, u, v, spoilt] = [(); 6].map(|()| random.next());
+            let (sin, cos) = (angle * std::f32::consts::TAU).sin_cos();
+            let (p, q) = match fill {
+                Fill::Flat => (0.0, 0.0),
+                Fill::Extreme if p < 0.5 => (1e6, 1e6),
+                Fill::Extreme => (1.0, 2.0),
+                _ => (1.0 + 9.0 * p, 1.0 + 9.0 * q),
+            };
+            let (xx, xy, yy) = (p * cos * cos + q * sin * sin, (p - q) * sin * cos, p * sin * sin + q * cos * cos);
+            let (u, v) = (16.0 * u - 8.0, 16.0 * v - 8.0);
+            let mut pixel = [xx, xy, yy, xx * u + xy * v, xy * u + yy * v];
+            if fill == Fill::Nan && spoilt < 0.02 {
+                pixel[3] = f32::NAN;
+            }
+            for (channel, value) in pixel.into_iter().enumerate() {
+                row[channel * stride + x] = value;
+            }
+        }
+        for channel in row.chunks_exact_mut(stride) {
+            repeat_last(channel, size.width as usize);
+        }
+    }
+    values
+}

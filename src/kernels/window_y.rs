@@ -1,0 +1,52 @@
+//! Columns of five channels averaged by a symmetric window: the vertical half of the neighbourhood's sum.
+
+use super::cases::{Fill, cases as each_fill, planes};
+use super::rows::{Split, bands, clamp_index, dimensions, weighted_sum};
+use super::tables;
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel, params};
+
+params! {
+    /// Shape of the picture and of the window.
+    struct Params {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The window has `2 radius + 1` rows.
+        radius: u32,
+    }
+}
+
+kernel!(
+    "window_y" + ["image"],
+    reference(Params; equations, window) -> (columns),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 100.0 * 16.0 * f32::EPSILON,
+        relative: 4.0 * f32::EPSILON,
+        reason: "a mean of thirteen values up to 100 of either sign, fused or not",
+    },
+);
+
+fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32]) {
+    let (_, height, stride) = dimensions(p.width, p.height);
+    let radius = p.radius as isize;
+    let window = &window[..2 * p.radius as usize + 1];
+    bands(columns, &mut [], Split::rows_of(5 * stride), #[inline(always)] |band| {
+        for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
+            let first = (band.y0 + i) as isize - radius;
+            // The five channels of a row lie side by side and are averaged alike.
+            weighted_sum(rows, window, |k| {
+                &equations[clamp_index(first + k as isize, height) * 5 * stride..][..5 * stride]
+            });
+        }
+    });
+}
+
+fn cases(size: Size) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, radius: 6 };
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
+        vec![planes(size, 5, fill, [-100.0, 100.0], 11), tables::window(13, true)]
+    })
+}
