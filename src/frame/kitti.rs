@@ -87,7 +87,7 @@ mod tests {
     fn rounds_to_a_64th_and_marks_what_it_cannot_hold() {
         let data = vec![
             [0.0, -512.0],
-            [511.984_375, 0.007],
+            [512.0 - 1.0 / 64.0, 0.007],
             [0.008, -0.25],
             [512.0, 0.0],
             [0.0, -512.01],
@@ -98,7 +98,7 @@ mod tests {
         let flow = FlowField { size: Size::new(4, 2), data };
         let back = decode(Path::new("a.png"), &encode(&flow).unwrap()).unwrap();
         let none = [UNKNOWN_FLOW; 2];
-        let known = [[0.0, -512.0], [511.984_375, 0.0], [1.0 / 64.0, -0.25]];
+        let known = [[0.0, -512.0], [512.0 - 1.0 / 64.0, 0.0], [1.0 / 64.0, -0.25]];
         assert_eq!(back.data[..3], known);
         assert_eq!(back.data[3..], [none; 5]);
     }
