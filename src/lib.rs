@@ -2,6 +2,7 @@
 
 pub mod cpu;
 pub mod error;
+pub mod eval;
 pub mod flow;
 pub mod frame;
 pub mod gpu;

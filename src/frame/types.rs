@@ -115,6 +115,13 @@ pub struct Image {
     pub data: Vec<u8>,
 }
 
+/// A picture of no pixels, for a reader to fill. It is not a legal frame before that.
+impl Default for Image {
+    fn default() -> Self {
+        Self { size: Size::new(0, 0), format: PixelFormat::Gray8, data: Vec::new() }
+    }
+}
+
 impl Image {
     /// The picture as a borrowed frame.
     ///

@@ -1,0 +1,5 @@
+//! How good a flow field is.
+
+mod metrics;
+
+pub use metrics::{FlowError, angular_error_deg, endpoint_error, flow_error};
