@@ -14,7 +14,8 @@ fn compare_sides(kernel: &Kernel) {
     for size in SIZES {
         for case in (kernel.cases)(size) {
             let inputs: Vec<&[f32]> = case.inputs.iter().map(Vec::as_slice).collect();
-            let mut expected: Vec<Vec<f32>> = case.outputs.iter().map(|len| vec![compare::POISON; *len]).collect();
+            let mut expected: Vec<Vec<f32>> =
+                case.outputs.iter().map(|len| vec![compare::POISON; *len]).collect();
             let mut outputs: Vec<&mut [f32]> = expected.iter_mut().map(Vec::as_mut_slice).collect();
             (kernel.reference)(&case.params, &inputs, &mut outputs);
             let extent = [case.extent.width, case.extent.height];
@@ -47,7 +48,10 @@ viewsphere::for_each_kernel!(tests);
 
 #[test]
 fn every_shader_fits_its_kernel() {
-    let problems: Vec<String> =
-        kernels::ALL.iter().filter_map(|kernel| reflect(kernel).err()).map(|error| error.to_string()).collect();
+    let problems: Vec<String> = kernels::ALL
+        .iter()
+        .filter_map(|kernel| reflect(kernel).err())
+        .map(|error| error.to_string())
+        .collect();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }

@@ -138,8 +138,6 @@ impl GpuExecutor {
         read(&self.gpu, self.buf(id), len)
     }
 
-    pub fn submit(&self, encoder: wgpu::CommandEncoder) { self.gpu.queue.submit([encoder.finish()]); }
-
     /// Runs one step of the plan's `ingest` and `pair` list and waits for it. For comparisons.
     ///
     /// # Errors

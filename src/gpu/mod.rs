@@ -41,7 +41,8 @@ impl Gpu {
         let storage_buffers = limits.max_storage_buffers_per_shader_stage;
         if storage_buffers < reflect::MAX_STORAGE_BUFFERS as u32 {
             let expected = reflect::MAX_STORAGE_BUFFERS;
-            let reason = format!("{name} allows {storage_buffers} storage buffers a stage, {expected} are needed");
+            let reason =
+                format!("{name} allows {storage_buffers} storage buffers a stage, {expected} are needed");
             return Err(Error::NoAdapter { reason });
         }
         let descriptor = wgpu::DeviceDescriptor {
@@ -107,6 +108,11 @@ impl Gpu {
     /// The device, for callers who share it.
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// Its queue, for callers who share it.
+    pub fn queue(&self) -> &Queue {
+        &self.queue
     }
 
     /// Why the device is gone, if it is.

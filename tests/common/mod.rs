@@ -8,7 +8,7 @@ use viewsphere::gpu::{Gpu, GpuOptions};
 /// The adapter that the tests run on: the one that `VIEWSPHERE_ADAPTER` names, or any.
 ///
 /// Where there is none a test is skipped, and says so; but under `CI` that is a failure.
-pub fn gpu() -> Option<Gpu> {
+pub(crate) fn gpu() -> Option<Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let open = || {
         let adapter = std::env::var("VIEWSPHERE_ADAPTER").ok();

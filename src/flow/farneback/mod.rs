@@ -42,6 +42,10 @@ pub struct Farneback {
     pub window: Window,
     /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
     pub initial_flow: bool,
+    /// Whether each frame comes with a certainty of its pixels.
+    pub certainty: bool,
+    /// Whether a confidence is computed beside the flow.
+    pub confidence: bool,
 }
 
 impl Default for Farneback {
@@ -55,6 +59,8 @@ impl Default for Farneback {
             poly_sigma: 1.2,
             window: Window::Box,
             initial_flow: false,
+            certainty: false,
+            confidence: false,
         }
     }
 }
