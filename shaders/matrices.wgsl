@@ -71,6 +71,6 @@ fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let g = vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y);
     let h = vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y);
     // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
-    let known = all(abs(g) <= vec3f(1e30)) && all(abs(h) <= vec2f(1e30));
+    let known = dot(abs(g), vec3f(1.0)) + dot(abs(h), vec2f(1.0)) <= 1e30;
     return Equations(select(vec3f(), g, known), select(vec2f(), h, known));
 }

@@ -3,8 +3,10 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3; the border's weights and
 //! what happens outside the picture are OpenCV's.
 
+use glam::{BVec4A, Mat4, UVec4, Vec4};
+
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::rows::{Split, bands, dimensions};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -30,19 +32,6 @@ kernel!(
     },
 );
 
-/// Pixels worked on side by side.
-const LANES: usize = 16;
-
-/// The model of [`LANES`] pixels: the mean of A, and half the difference of b, before the flow so far is added.
-#[derive(Default)]
-struct Models {
-    b_x: [f32; LANES],
-    b_y: [f32; LANES],
-    a_xx: [f32; LANES],
-    a_yy: [f32; LANES],
-    a_xy: [f32; LANES],
-}
-
 fn reference(
     p: &Params,
     quad_0: &[f32],
@@ -53,77 +42,76 @@ fn reference(
     equations: &mut [f32],
 ) {
     let (width, height, stride) = dimensions(p.width, p.height);
-    let second = Second { quad: quad_1.as_chunks().0, cross_term: cross_term_1, width, height, stride };
-    let quad_0 = quad_0.as_chunks::<4>().0;
-    bands(equations, &mut [], Split::rows_of(5 * stride), #[inline(always)] |band| {
+    let second = Second { quad: fours(quad_1), cross_term: cross_term_1, width, height, stride };
+    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
+    bands(equations, &mut [], split, #[inline(always)] |band| {
+        for (x, weight) in band.scratch.iter_mut().enumerate() {
+            *weight = border_weight(x.min(width - 1), width);
+        }
         for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
             let y = band.y0 + i;
-            let quad_0 = &quad_0[y * stride..][..width];
-            let cross_term_0 = &cross_term_0[y * stride..][..width];
-            let (u, v) = flow[2 * y * stride..][..2 * stride].split_at(stride);
             let weight_y = border_weight(y, height);
-            for x0 in (0..width).step_by(LANES) {
-                let count = LANES.min(width - x0);
-                let mut models = Models::default();
-                let mut d = [[0.0; LANES]; 2];
-                let mut weights = [0.0; LANES];
-                d[0][..count].copy_from_slice(&u[x0..x0 + count]);
-                d[1][..count].copy_from_slice(&v[x0..x0 + count]);
-                for i in 0..count {
-                    let x = x0 + i;
-                    let at = [x as f32 + d[0][i], y as f32 + d[1][i]];
-                    models.set(i, &quad_0[x], cross_term_0[x], second.at(at));
-                    weights[i] = weight_y * border_weight(x, width);
+            let (u, v) = fours(&flow[2 * y * stride..][..2 * stride]).split_at(stride / 4);
+            let quad_0 = &fours(quad_0)[y * stride..][..stride];
+            let cross_term_0 = &fours(cross_term_0)[y * stride / 4..][..stride / 4];
+            let out = rows.as_chunks_mut::<4>().0;
+            for four in 0..stride / 4 {
+                let x = UVec4::new(0, 1, 2, 3) + 4 * four as u32;
+                let d = [u[four], v[four]].map(Vec4::from_array);
+                let second = second.at(x.min(UVec4::splat(p.width - 1)).as_vec4() + d[0], d[1] + y as f32);
+                let quads = &quad_0[4 * four..][..4];
+                let first = Expansions {
+                    quad: transpose([0, 1, 2, 3].map(|i| Vec4::from_array(quads[i]))),
+                    cross_term: Vec4::from_array(cross_term_0[four]),
+                };
+                let weight = weight_y * Vec4::from_array(fours(band.scratch)[four]);
+                for (channel, values) in equations_of(&first, &second, d, weight).into_iter().enumerate() {
+                    out[channel * (stride / 4) + four] = values.to_array();
                 }
-                for (channel, values) in models.equations(&d, &weights).iter().enumerate() {
-                    rows[channel * stride + x0..][..count].copy_from_slice(&values[..count]);
-                }
-            }
-            for channel in rows.chunks_exact_mut(stride) {
-                repeat_last(channel, width);
             }
         }
     });
 }
 
-impl Models {
-    /// The model of one pixel: where the second frame has no expansion, the first one's stands alone and says nothing
-    /// of motion.
-    #[inline(always)]
-    fn set(&mut self, i: usize, quad_0: &[f32; 4], cross_term_0: f32, second: Option<([f32; 4], f32)>) {
-        let (quad, cross_term) = match second {
-            Some((quad_1, cross_term_1)) => {
-                let sign = [-1.0, -1.0, 1.0, 1.0];
-                let half = |c: usize| 0.5 * (quad_0[c] + sign[c] * quad_1[c]);
-                ([half(0), half(1), half(2), half(3)], 0.25 * (cross_term_0 + cross_term_1))
-            }
-            None => ([0.5 * quad_0[0], 0.5 * quad_0[1], quad_0[2], quad_0[3]], 0.5 * cross_term_0),
-        };
-        [self.b_x[i], self.b_y[i], self.a_xx[i], self.a_yy[i]] = quad;
-        self.a_xy[i] = cross_term;
-    }
+#[inline(always)]
+fn fours(values: &[f32]) -> &[[f32; 4]] {
+    values.as_chunks().0
+}
 
-    /// G = AᵀA and h = AᵀΔb with Δb = b + A d: channels xx, xy, yy, x, y.
-    #[inline(always)]
-    fn equations(&self, d: &[[f32; LANES]; 2], weights: &[f32; LANES]) -> [[f32; LANES]; 5] {
-        let mut out = [[0.0; LANES]; 5];
-        for i in 0..LANES {
-            let (a_xx, a_xy, a_yy) = (self.a_xx[i], self.a_xy[i], self.a_yy[i]);
-            let b_x = self.b_x[i] + a_xx * d[0][i] + a_xy * d[1][i];
-            let b_y = self.b_y[i] + a_xy * d[0][i] + a_yy * d[1][i];
-            let w = weights[i];
-            let (a_xx, a_xy, a_yy, b_x, b_y) = (w * a_xx, w * a_xy, w * a_yy, w * b_x, w * b_y);
-            let g = [a_xx * a_xx + a_xy * a_xy, (a_xx + a_yy) * a_xy, a_yy * a_yy + a_xy * a_xy];
-            let h = [a_xx * b_x + a_xy * b_y, a_xy * b_x + a_yy * b_y];
-            let all = [g[0], g[1], g[2], h[0], h[1]];
-            // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
-            let known = all.iter().fold(true, |known, value| known & (value.abs() <= 1e30));
-            for (channel, value) in all.into_iter().enumerate() {
-                out[channel][i] = if known { value } else { 0.0 };
-            }
-        }
-        out
-    }
+#[inline(always)]
+fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
+    let turned = Mat4::from_cols(a, b, c, d).transpose();
+    [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
+}
+
+/// The expansions of four pixels.
+struct Expansions {
+    /// b_x, b_y, A_xx, A_yy, each of four pixels.
+    quad: [Vec4; 4],
+    /// 2 A_xy.
+    cross_term: Vec4,
+}
+
+/// Of four pixels, G = AᵀA and h = AᵀΔb with Δb = −½ (b2 − b1) + A d and A the mean of both: channels xx, xy, yy, x, y.
+///
+/// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
+#[inline(always)]
+fn equations_of(first: &Expansions, second: &(Expansions, BVec4A), d: [Vec4; 2], weight: Vec4) -> [Vec4; 5] {
+    let (second, inside) = second;
+    let or = |both: Vec4, alone: Vec4| Vec4::select(*inside, both, alone);
+    let half = |c: usize| or(0.5 * (first.quad[c] - second.quad[c]), 0.5 * first.quad[c]);
+    let mean = |c: usize| or(0.5 * (first.quad[c] + second.quad[c]), first.quad[c]);
+    let (b_x, b_y, a_xx, a_yy) = (half(0), half(1), mean(2), mean(3));
+    let a_xy = or(0.25 * (first.cross_term + second.cross_term), 0.5 * first.cross_term);
+    let b_x = weight * (b_x + a_xx * d[0] + a_xy * d[1]);
+    let b_y = weight * (b_y + a_xy * d[0] + a_yy * d[1]);
+    let (a_xx, a_xy, a_yy) = (weight * a_xx, weight * a_xy, weight * a_yy);
+    let g = [a_xx * a_xx + a_xy * a_xy, (a_xx + a_yy) * a_xy, a_yy * a_yy + a_xy * a_xy];
+    let h = [a_xx * b_x + a_xy * b_y, a_xy * b_x + a_yy * b_y];
+    // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+    let size = g[0].abs() + g[1].abs() + g[2].abs() + h[0].abs() + h[1].abs();
+    let known = size.cmple(Vec4::splat(1e30));
+    [g[0], g[1], g[2], h[0], h[1]].map(|value| Vec4::select(known, value, Vec4::ZERO))
 }
 
 /// The second frame's expansion, to be read between pixels.
@@ -136,29 +124,31 @@ struct Second<'a> {
 }
 
 impl Second<'_> {
-    /// The expansion at a place between four pixels, or nothing where there are not four around it.
+    /// The expansions at four places, and at which of them there are four pixels around the place. Elsewhere the
+    /// expansion is numbers without meaning.
     #[inline(always)]
-    fn at(&self, [x, y]: [f32; 2]) -> Option<([f32; 4], f32)> {
-        let inside = x >= 0.0 && y >= 0.0 && x < (self.width - 1) as f32 && y < (self.height - 1) as f32;
-        if !inside {
-            return None;
+    fn at(&self, x: Vec4, y: Vec4) -> (Expansions, BVec4A) {
+        let within = |at: Vec4, n: usize| at.cmpge(Vec4::ZERO) & at.cmplt(Vec4::splat((n - 1) as f32));
+        // A place that is not a number is not inside either.
+        let inside = within(x, self.width) & within(y, self.height);
+        let (x, y) = (Vec4::select(inside, x, Vec4::ZERO), Vec4::select(inside, y, Vec4::ZERO));
+        let (left, above) = (x.as_uvec4(), y.as_uvec4());
+        let (fx, fy) = (x - left.as_vec4(), y - above.as_vec4());
+        let (gx, gy) = (1.0 - fx, 1.0 - fy);
+        let weights = transpose([gx * gy, fx * gy, gx * fy, fx * fy]);
+        let first = above * self.stride as u32 + left;
+        let mut quads = [Vec4::ZERO; 4];
+        let mut cross_terms = [0.0; 4];
+        for i in 0..4 {
+            let first = first[i] as usize;
+            let (right, below) = if inside.test(i) { (1, self.stride) } else { (0, 0) };
+            let places = [first, first + right, first + below, first + below + right];
+            let [a, b, c, d] = places.map(|at| Vec4::from_array(self.quad[at]));
+            let w = weights[i];
+            quads[i] = a * w.x + b * w.y + c * w.z + d * w.w;
+            cross_terms[i] = Vec4::from_array(places.map(|at| self.cross_term[at])).dot(w);
         }
-        let (left, above) = (x as usize, y as usize);
-        let (fx, fy) = (x - left as f32, y - above as f32);
-        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-        let i = above * self.stride + left;
-        let (quad_above, quad_below) = (&self.quad[i..i + 2], &self.quad[i + self.stride..][..2]);
-        let quads = [&quad_above[0], &quad_above[1], &quad_below[0], &quad_below[1]];
-        let mut quad = [0.0; 4];
-        for (q, w) in quads.into_iter().zip(weights) {
-            for c in 0..4 {
-                quad[c] += w * q[c];
-            }
-        }
-        let (above, below) = (&self.cross_term[i..i + 2], &self.cross_term[i + self.stride..][..2]);
-        let cross_term =
-            weights[0] * above[0] + weights[1] * above[1] + weights[2] * below[0] + weights[3] * below[1];
-        Some((quad, cross_term))
+        (Expansions { quad: transpose(quads), cross_term: Vec4::from_array(cross_terms) }, inside)
     }
 }
 
