@@ -13,7 +13,7 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> confidence: array<vec4f>;
 
 // What the expansion of a picture without motion leaves of Δb, squared, by rounding to whole gray levels.
-const NOISE = 0.01;
+const NOISE = 0.001;
 // The error that halves the confidence, in pixels.
 const HALF = 0.25;
 // Keeps an error off infinity where there is no texture at all.

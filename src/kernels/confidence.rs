@@ -3,7 +3,7 @@
 //!
 //! The equations `A d = Δb` of a window's pixels determine d by least squares. What the found flow leaves of Δb is their
 //! noise, of variance r, and the least eigenvalue λ of the mean of AᵀA is the curvature in the direction that is known
-//! least; so the error there has a standard deviation of about `σ = √((r + 0.01) / λ)` pixels, where 0.01 stands for
+//! least; so the error there has a standard deviation of about `σ = √((r + 0.001) / λ)` pixels, where 0.001 stands for
 //! what rounding to whole gray levels leaves. The confidence is `0.25 / (0.25 + σ)`, times the share of the window that
 //! both frames show: 1 where the flow is certain, ½ at a quarter of a pixel, 0 where there is nothing to go by.
 
@@ -14,7 +14,7 @@ use super::tables;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel};
 
-const NOISE: f32 = 0.01;
+const NOISE: f32 = 0.001;
 const HALF: f32 = 0.25;
 const SMALLEST: f32 = 1e-6;
 
