@@ -1,5 +1,7 @@
 //! Dense optical flow for vehicles that fly cameras.
 
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod cpu;
 pub mod error;
 pub mod eval;
