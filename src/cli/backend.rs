@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::print;
+use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, GpuOptions};
 
@@ -29,32 +30,51 @@ pub(super) enum BackendArg {
 }
 
 impl BackendArgs {
-    /// The device to compute on, or none for the CPU. Says on stderr which one it is.
-    pub(super) fn open(&self) -> Result<Option<Gpu>> {
-        let gpu = self.find()?;
-        match &gpu {
-            Some(gpu) => print::note(format_args!("computing on {}", gpu.adapter())),
-            None if self.backend.is_some() => print::note("computing on the CPU"),
-            None => {}
+    /// What to compute on. Says on stderr which it is.
+    pub(super) fn open(&self) -> Result<Backend> {
+        let backend = match (self.backend, &self.adapter) {
+            (None, None) => match Gpu::new(&GpuOptions::default()) {
+                Ok(gpu) => Backend::Gpu(gpu),
+                Err(Error::NoAdapter { reason }) => {
+                    print::note(format_args!("computing on the CPU; no usable GPU adapter: {reason}"));
+                    return Ok(Backend::Cpu);
+                }
+                Err(error) => return Err(error),
+            },
+            _ => self.named()?,
+        };
+        match &backend {
+            Backend::Gpu(gpu) => print::note(format_args!("computing on {}", gpu.adapter())),
+            Backend::Cpu => print::note("computing on the CPU"),
         }
-        Ok(gpu)
+        Ok(backend)
     }
 
-    fn find(&self) -> Result<Option<Gpu>> {
+    /// All that can be computed on: the CPU, and before it a GPU where there is one, unless one of them is named.
+    pub(super) fn open_all(&self) -> Result<Vec<Backend>> {
+        if self.backend.is_some() {
+            return Ok(vec![self.named()?]);
+        }
+        if self.adapter.is_some() {
+            return Ok(vec![self.named()?, Backend::Cpu]);
+        }
+        match Gpu::new(&GpuOptions::default()) {
+            Ok(gpu) => Ok(vec![Backend::Gpu(gpu), Backend::Cpu]),
+            Err(Error::NoAdapter { reason }) => {
+                print::note(format_args!("only the CPU; no usable GPU adapter: {reason}"));
+                Ok(vec![Backend::Cpu])
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn named(&self) -> Result<Backend> {
         match (self.backend, &self.adapter) {
-            (Some(BackendArg::Cpu), None) => Ok(None),
+            (Some(BackendArg::Cpu), None) => Ok(Backend::Cpu),
             (Some(BackendArg::Cpu), Some(adapter)) => {
                 Err(Error::parameter("--adapter", adapter, "none beside --backend cpu"))
             }
-            (None, None) => match Gpu::new(&GpuOptions::default()) {
-                Ok(gpu) => Ok(Some(gpu)),
-                Err(Error::NoAdapter { reason }) => {
-                    print::note(format_args!("computing on the CPU: no usable GPU adapter: {reason}"));
-                    Ok(None)
-                }
-                Err(error) => Err(error),
-            },
-            _ => self.gpu().map(Some),
+            _ => Ok(Backend::Gpu(self.gpu()?)),
         }
     }
 

@@ -10,7 +10,7 @@ use super::args::FlowArgs;
 use super::backend::BackendArgs;
 use super::eval::Figures;
 use super::flow::gray;
-use super::{Outcome, print};
+use super::{Outcome, input, print};
 use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
 use crate::eval::{Scene, endpoint_error, flow_error};
@@ -54,7 +54,7 @@ struct Report {
     height: u32,
     accuracy: Figures,
     median_ms: f64,
-    p99_ms: f64,
+    max_ms: f64,
     fps: f64,
     color_scale_px: f32,
     folder: PathBuf,
@@ -64,7 +64,7 @@ impl Demo {
     pub(super) fn run(&self) -> Result<Outcome> {
         let mut config = Config { flow: self.flow.farneback()?, ..Config::default() };
         config.flow.confidence = true;
-        fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
+        input::folder(&self.output)?;
         let mut engine = Engine::new(self.backend.open()?, self.size, &config)?;
         let scene = Scene::new(self.size)?;
         let pair = [scene.frame(0), scene.frame(1)];
@@ -77,6 +77,7 @@ impl Demo {
         };
         let flow = flow.ok_or_else(|| Error::parameter("flow", "missing", "one for the second frame"))?;
         let error = flow_error(&truth, &flow, None)?;
+        fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
         let scale = write(&self.output, &pair, &truth, &flow, confidence.as_ref())?;
 
         let mut times = Vec::new();
@@ -95,7 +96,7 @@ impl Demo {
             height: self.size.height,
             accuracy: error.into(),
             median_ms: median,
-            p99_ms: times[times.len() - 1],
+            max_ms: times[times.len() - 1],
             fps: 1e3 / median,
             color_scale_px: scale,
             folder: self.output.clone(),

@@ -1,4 +1,4 @@
-//! Files that the subcommands read, and whether they belong together.
+//! What the subcommands read, and whether it belongs together.
 
 use std::path::Path;
 
@@ -11,6 +11,14 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
         return Ok(());
     }
     Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
+}
+
+/// Checks that a folder is there or can be made, and makes nothing.
+pub(super) fn folder(path: &Path) -> Result<()> {
+    let there = path.ancestors().find(|folder| folder.exists());
+    // An ancestor of no name is the working folder.
+    let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::read_dir(there).map(|_| ()).map_err(|source| Error::io(there, source))
 }
 
 /// Two pictures of one size and pixel format.

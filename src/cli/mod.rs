@@ -5,11 +5,14 @@
 
 mod args;
 mod backend;
+mod bench;
 mod buffers;
 mod crosscheck;
+mod demo;
 mod devices;
 mod environment;
 mod eval;
+mod flow;
 mod input;
 mod print;
 
@@ -42,9 +45,12 @@ struct Cli {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    Flow(Box<flow::Flow>),
     Crosscheck(Box<crosscheck::Crosscheck>),
     Eval(eval::Eval),
+    Bench(Box<bench::Bench>),
     Devices(devices::Devices),
+    Demo(Box<demo::Demo>),
 }
 
 /// Whether what was asked for holds.
@@ -74,9 +80,12 @@ pub fn main() -> ExitCode {
 impl Command {
     fn run(&self) -> Result<Outcome> {
         match self {
+            Self::Flow(command) => command.run(),
             Self::Crosscheck(command) => command.run(),
             Self::Eval(command) => command.run(),
+            Self::Bench(command) => command.run(),
             Self::Devices(command) => command.run(),
+            Self::Demo(command) => command.run(),
         }
     }
 }

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use self::report::Report;
 use self::source::Source;
+pub(super) use self::targets::gray;
 use self::targets::{FormatArg, Pair, Targets};
 use super::args::FlowArgs;
 use super::backend::BackendArgs;
@@ -152,7 +153,7 @@ fn compute(
     let certainty = given.mask.as_ref();
     let mut initial_flow = given.init.as_ref();
     engine.process_with(&first.frame()?, &Extras { certainty, initial_flow: None })?;
-    targets.prepare()?;
+    targets.make_folders()?;
     loop {
         let output = engine.process_with(&second.frame()?, &Extras { certainty, initial_flow })?;
         if let Some((flow, output)) = output.and_then(|output| Some((output.flow?, output))) {
@@ -178,7 +179,9 @@ fn initial(path: &Path, size: Size, first: &Path) -> Result<FlowField> {
 
 /// A bar on standard error, where that is a terminal.
 fn progress(frames: Option<u64>) -> ProgressBar {
-    let style = |template: &str| ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = |template: &str| {
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+    };
     match frames {
         Some(2) => ProgressBar::hidden(),
         Some(frames) => ProgressBar::new(frames.saturating_sub(1))

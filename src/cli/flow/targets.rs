@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::Flow;
-use crate::cli::print;
+use crate::cli::{input, print};
 use crate::error::{Error, Result};
 use crate::frame::{
     FlowField, Image, PixelFormat, Plane, arrows, colour_wheel, flo, kitti, npy, picture, write_bytes,
@@ -82,7 +82,9 @@ impl Targets {
         } else if let Some(format) = args.format {
             return Err(Error::parameter("--format", format.extension(), "an output (-o) beside it"));
         }
-        for (path, kind) in [(&args.color, Kind::Color), (&args.arrows, Kind::Arrows { gain: args.arrow_gain })] {
+        for (path, kind) in
+            [(&args.color, Kind::Color), (&args.arrows, Kind::Arrows { gain: args.arrow_gain })]
+        {
             if let Some(path) = path {
                 places.push((kind, place(path, single, "png", &["png"])?));
             }
@@ -93,7 +95,7 @@ impl Targets {
             places.push((Kind::Confidence { npy }, place));
         }
         let targets = Self { places, scale: args.scale, colours: args.color.is_some() };
-        targets.check_distinct()?;
+        targets.check()?;
         Ok(targets)
     }
 
@@ -102,18 +104,11 @@ impl Targets {
         self.scale.filter(|_| self.colours)
     }
 
-    /// Makes the folders, and looks whether those of files are there.
-    pub(super) fn prepare(&self) -> Result<()> {
+    /// Makes the folders.
+    pub(super) fn make_folders(&self) -> Result<()> {
         for (_, place) in &self.places {
-            match place {
-                Place::Folder(folder, _) => fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?,
-                Place::File(path) => {
-                    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-                    if let Some(folder) = folder {
-                        fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
-                    }
-                }
-                Place::Stdout => {}
+            if let Place::Folder(folder, _) = place {
+                fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
             }
         }
         Ok(())
@@ -155,9 +150,19 @@ impl Targets {
         Ok(())
     }
 
-    fn check_distinct(&self) -> Result<()> {
+    /// Checks that the folders are there or can be made, and that no result would replace another one.
+    fn check(&self) -> Result<()> {
         let mut seen = Vec::new();
         for (_, place) in &self.places {
+            match place {
+                Place::Folder(folder, _) => input::folder(folder)?,
+                Place::File(path) => {
+                    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+                    let parent = parent.unwrap_or(Path::new("."));
+                    fs::read_dir(parent).map_err(|source| Error::io(parent, source))?;
+                }
+                Place::Stdout => {}
+            }
             let name = match place {
                 Place::Stdout => PathBuf::from("-"),
                 Place::File(path) => path.clone(),
@@ -184,7 +189,11 @@ fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(K
     if path == Path::new("-") {
         let format = format.unwrap_or(FormatArg::Flo);
         if !single && format == FormatArg::Kitti {
-            return Err(Error::parameter("--format", "kitti", "flo or npy for a sequence to standard output"));
+            return Err(Error::parameter(
+                "--format",
+                "kitti",
+                "flo or npy for a sequence to standard output",
+            ));
         }
         return Ok((Kind::Flow(format), Place::Stdout));
     }
