@@ -106,7 +106,7 @@ impl Demo {
         } else {
             print::text(&format!(
                 "backend    {}\naccuracy   mean endpoint error {:.4} px, mean angular error {:.3}°, {:.2} % over 1 px\n\
-                 speed      {:.2} ms a frame, {:.0} frames a second at {}\ncolours    {scale} px in full colour\n\
+                 speed      {:.2} ms a frame, {:.0} frames a second at {}\ncolours    {scale:.4} px in full colour\n\
                  pictures   in {}",
                 report.backend,
                 error.aee_px,

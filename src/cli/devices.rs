@@ -50,7 +50,7 @@ impl Devices {
     pub(super) fn run(&self) -> Result<Outcome> {
         let default = match Gpu::new(&GpuOptions::default()) {
             Ok(gpu) => gpu.adapter().to_string(),
-            Err(error) => format!("CPU, because of {error}"),
+            Err(error) => format!("the CPU; {error}"),
         };
         let cpu_threads = rayon::current_num_threads();
         let list = List { default, adapters: adapters().iter().map(Device::new).collect(), cpu_threads };

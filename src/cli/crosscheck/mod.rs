@@ -38,6 +38,9 @@ pub(super) struct Crosscheck {
     /// Part of the name of the GPU adapter to check; without it the best one, software adapters too
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    /// Multiply every bound by this; 0 asks for the same bits on both sides
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    bounds: f32,
     /// Print every step, not only the worst of each kernel
     #[arg(long)]
     steps: bool,
@@ -53,6 +56,9 @@ impl Crosscheck {
         let mut config = self.flow.farneback()?;
         config.confidence = true;
         config.certainty = self.mask.is_some();
+        if !(self.bounds.is_finite() && self.bounds >= 0.0) {
+            return Err(Error::parameter("--bounds", self.bounds, "a finite number of 0 or more"));
+        }
         let (pair, name) = self.pair()?;
         let certainty = self.mask.as_ref().map(|path| input::plane(path, pair[0].size, &name)).transpose()?;
         let gpu = Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })?;
@@ -61,7 +67,7 @@ impl Crosscheck {
         if certainty.is_some() && plan.certainty.is_none() {
             return Err(Error::parameter("--mask", "given", "none: the plan takes no certainty"));
         }
-        let report = run::run(&gpu, &plan, &pair, certainty.as_ref())?;
+        let report = run::run(&gpu, &plan, &pair, certainty.as_ref(), self.bounds)?;
         if self.json {
             print::json(&report)?;
         } else {

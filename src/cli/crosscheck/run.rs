@@ -69,15 +69,24 @@ struct Sides<'a> {
     cpu: CpuExecutor,
     corrected: GpuExecutor,
     alone: GpuExecutor,
+    /// What bounds are multiplied by.
+    factor: f32,
 }
 
-/// Runs the plan on a pair of frames, on all sides.
-pub(super) fn run(gpu: &Gpu, plan: &Plan, pair: &[Image; 2], certainty: Option<&Plane>) -> Result<Report> {
+/// Runs the plan on a pair of frames, on all sides, with every bound multiplied by `factor`.
+pub(super) fn run(
+    gpu: &Gpu,
+    plan: &Plan,
+    pair: &[Image; 2],
+    certainty: Option<&Plane>,
+    factor: f32,
+) -> Result<Report> {
     let mut sides = Sides {
         plan,
         cpu: CpuExecutor::new(plan),
         corrected: GpuExecutor::new(gpu, plan)?,
         alone: GpuExecutor::new(gpu, plan)?,
+        factor,
     };
     let mut report = Report {
         adapter: gpu.adapter().to_string(),
@@ -131,9 +140,10 @@ impl Sides<'_> {
         self.alone.run(parity, index)?;
         let name = format!("frame {parity}, {}", step.label);
         for (&(id, shape), &output) in step.outputs.iter().zip(step.kernel.outputs) {
-            let difference = self.difference(&self.corrected, id, shape, step)?;
-            report.steps.push(StepFigures::new(step, name.clone(), output, shape, &difference));
-            let alone = self.difference(&self.alone, id, shape, step)?;
+            let tolerance = self.tolerance(step);
+            let difference = self.difference(&self.corrected, id, shape, tolerance)?;
+            report.steps.push(StepFigures::new(step, name.clone(), output, shape, tolerance, &difference));
+            let alone = self.difference(&self.alone, id, shape, tolerance)?;
             let named = || Some(format!("{} ({name}): {output} by up to {:e}", step.kernel.name, alone.max));
             if alone.max != 0.0 && report.first_difference.is_none() {
                 report.first_difference = named();
@@ -145,15 +155,33 @@ impl Sides<'_> {
         Ok(())
     }
 
-    fn difference(&self, gpu: &GpuExecutor, id: BufId, shape: Shape, step: &Step) -> Result<Difference> {
+    fn tolerance(&self, step: &Step) -> Tolerance {
+        let Tolerance { absolute, relative, reason } = step.kernel.tolerance;
+        Tolerance { absolute: self.factor * absolute, relative: self.factor * relative, reason }
+    }
+
+    fn difference(
+        &self,
+        gpu: &GpuExecutor,
+        id: BufId,
+        shape: Shape,
+        within: Tolerance,
+    ) -> Result<Difference> {
         let found = gpu.read(id, shape.len())?;
-        Ok(compare(&self.cpu.buf(id)[..shape.len()], &found, step.kernel.tolerance))
+        Ok(compare(&self.cpu.buf(id)[..shape.len()], &found, within))
     }
 }
 
 impl StepFigures {
-    fn new(step: &Step, name: String, output: &'static str, shape: Shape, found: &Difference) -> Self {
-        let Tolerance { absolute, relative, reason } = step.kernel.tolerance;
+    fn new(
+        step: &Step,
+        name: String,
+        output: &'static str,
+        shape: Shape,
+        within: Tolerance,
+        found: &Difference,
+    ) -> Self {
+        let Tolerance { absolute, relative, reason } = within;
         let worst = found.worst.map(|breach| {
             let [column, row, channel] = shape.place(breach.index);
             Worst { column, row, channel, cpu: breach.expected, gpu: breach.found, bound: breach.bound }
@@ -202,6 +230,7 @@ mod tests {
             "frame".to_owned(),
             "gray",
             shape,
+            step.kernel.tolerance,
             &compare(&expected, &found, step.kernel.tolerance),
         );
         assert_eq!((figures.breaches, figures.kernel), (2, "luma"));

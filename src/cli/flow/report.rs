@@ -78,7 +78,7 @@ impl Report {
             ))?;
         }
         match self.color_scale_px {
-            Some(scale) => print::text(&format!("colour scale: {scale} px in full colour")),
+            Some(scale) => print::text(&format!("colour scale: {scale:.4} px in full colour")),
             None => Ok(()),
         }
     }
