@@ -159,8 +159,8 @@ impl Engine {
     /// # Errors
     /// [`Error::Timeout`] if [`Config::deadline`] has passed since submit and the frame is not done; it may be asked for
     /// again, and then has the same time again from that call on. [`Error::Ticket`] if the frame was taken already,
-    /// dropped, or is another engine's. [`Error::DeviceLost`] for every frame in flight when the GPU is lost; the next
-    /// frame is a first frame on the device, which is brought back once, or on the CPU, as [`Config::on_loss`] says.
+    /// dropped, or is another engine's. [`Error::DeviceLost`] for every frame that is not done when the GPU is lost; the
+    /// next frame is a first frame on the device, which is brought back once, or on the CPU, as [`Config::on_loss`] says.
     pub fn wait(&mut self, ticket: Ticket) -> Result<Option<Output<'_>>> {
         let taken = self.take(ticket)?;
         Ok(self.output(&taken))
