@@ -13,53 +13,88 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> moments: array<f32>;
-@group(0) @binding(2) var<storage, read> applicability: array<vec4f>;    // (g, x g, x² g, 0) for x = −radius … radius
+@group(0) @binding(1) var<storage, read> moments: array<vec4f>;
+@group(0) @binding(2) var<storage, read> applicability: array<vec4f>;    // zeros up to a whole four, then as of expansion_y
 @group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // a pixel each: b_x, b_y, A_xx, A_yy
 @group(0) @binding(4) var<storage, read_write> cross_term: array<vec4f>; // a plane: 2 A_xy
 
-// Four columns at a time: the windows slide in registers, one new column a step.
-const SPAN = vec2u(4u, 1u);
-const MAX_TAPS = 65u;
+// Eight columns at a time: the windows slide in registers, four new columns a step.
+const SPAN = vec2u(8u, 1u);
+const MAX_STEPS = 18u;
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(16, 4)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let x0 = id.x * SPAN.x;
-    if x0 >= params.width || id.y >= params.height {
+    let stride = (params.width + 3u) / 4u;
+    let four = 2u * id.x;
+    let row = 3u * min(id.y, params.height - 1u) * stride;
+    let reach = (params.radius + 3u) / 4u;
+    var x = i32(four) - i32(reach);
+    var f0 = column(row, x);
+    var f1 = column(row, x + 1);
+    var fy0 = column(row + stride, x);
+    var fy1 = column(row + stride, x + 1);
+    var fyy0 = column(row + 2u * stride, x);
+    var fyy1 = column(row + 2u * stride, x + 1);
+    x += 2;
+    var left = Moments();
+    var right = Moments();
+    for (var k = 0u; k < min((4u * reach + params.radius + 4u) / 4u, MAX_STEPS); k++) {
+        let f2 = column(row, x);
+        let fy2 = column(row + stride, x);
+        let fyy2 = column(row + 2u * stride, x);
+        let g = applicability[3u * k];
+        let xg = applicability[3u * k + 1u];
+        let xxg = applicability[3u * k + 2u];
+        left = add(left, g, xg, xxg, f0, f1, fy0, fy1, fyy0, fyy1);
+        right = add(right, g, xg, xxg, f1, f2, fy1, fy2, fyy1, fyy2);
+        f0 = f1; f1 = f2; fy0 = fy1; fy1 = fy2; fyy0 = fyy1; fyy1 = fyy2;
+        x++;
+    }
+    store(four, id.y, left);
+    store(four + 1u, id.y, right);
+}
+
+// Of four neighbouring pixels each.
+struct Moments {
+    m_1: vec4f,
+    m_x: vec4f,
+    m_xx: vec4f,
+    m_y: vec4f,
+    m_xy: vec4f,
+    m_yy: vec4f,
+}
+
+fn add(
+    m: Moments, g: vec4f, xg: vec4f, xxg: vec4f,
+    f0: vec4f, f1: vec4f, fy0: vec4f, fy1: vec4f, fyy0: vec4f, fyy1: vec4f,
+) -> Moments {
+    return Moments(
+        m.m_1 + slide(f0, f1, g),
+        m.m_x + slide(f0, f1, xg),
+        m.m_xx + slide(f0, f1, xxg),
+        m.m_y + slide(fy0, fy1, g),
+        m.m_xy + slide(fy0, fy1, xg),
+        m.m_yy + slide(fyy0, fyy1, g),
+    );
+}
+
+// Four columns; past the ends of the row the end's value.
+fn column(row: u32, four: i32) -> vec4f {
+    let last = i32((params.width + 3u) / 4u) - 1;
+    return repeat_ends(moments[row + u32(clamp(four, 0, last))], four, last);
+}
+
+fn store(four: u32, y: u32, m: Moments) {
+    let stride = (params.width + 3u) / 4u;
+    if four >= stride || y >= params.height {
         return;
     }
-    let stride = (params.width + 3u) / 4u;
-    let start = 3u * id.y * stride * 4u;
-    let left = i32(x0) - i32(params.radius);
-    // Components of the vectors are the four columns.
-    var f = vec4f(0.0, sample(start, left, 0u), sample(start, left + 1, 0u), sample(start, left + 2, 0u));
-    var fy = vec4f(0.0, sample(start, left, 1u), sample(start, left + 1, 1u), sample(start, left + 2, 1u));
-    var fyy = vec4f(0.0, sample(start, left, 2u), sample(start, left + 1, 2u), sample(start, left + 2, 2u));
-    var m_1 = vec4f();
-    var m_x = vec4f();
-    var m_xx = vec4f();
-    var m_y = vec4f();
-    var m_xy = vec4f();
-    var m_yy = vec4f();
-    for (var k = 0u; k < min(2u * params.radius + 1u, MAX_TAPS); k++) {
-        let x = left + i32(k) + 3;
-        f = vec4f(f.yzw, sample(start, x, 0u));
-        fy = vec4f(fy.yzw, sample(start, x, 1u));
-        fyy = vec4f(fyy.yzw, sample(start, x, 2u));
-        let g = applicability[k];
-        m_1 += g.x * f;
-        m_x += g.y * f;
-        m_xx += g.z * f;
-        m_y += g.x * fy;
-        m_xy += g.y * fy;
-        m_yy += g.x * fyy;
-    }
-    let b_x = params.inv_x * m_x;
-    let b_y = params.inv_x * m_y;
-    let a_xx = params.inv_1_xx * m_1 + params.inv_xx * m_xx;
-    let a_yy = params.inv_1_xx * m_1 + params.inv_xx * m_yy;
-    let last = params.width - 1u - x0;
-    let at = (id.y * stride + id.x) * 4u;
+    let b_x = params.inv_x * m.m_x;
+    let b_y = params.inv_x * m.m_y;
+    let a_xx = params.inv_1_xx * m.m_1 + params.inv_xx * m.m_xx;
+    let a_yy = params.inv_1_xx * m.m_1 + params.inv_xx * m.m_yy;
+    let last = params.width - 1u - 4u * four;
+    let at = (y * stride + four) * 4u;
     let q0 = vec4f(b_x.x, b_y.x, a_xx.x, a_yy.x);
     let q1 = select(q0, vec4f(b_x.y, b_y.y, a_xx.y, a_yy.y), last >= 1u);
     let q2 = select(q1, vec4f(b_x.z, b_y.z, a_xx.z, a_yy.z), last >= 2u);
@@ -68,10 +103,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     quad[at + 1u] = q1;
     quad[at + 2u] = q2;
     quad[at + 3u] = q3;
-    cross_term[id.y * stride + id.x] = repeat_last(params.inv_xy * m_xy, x0, params.width);
-}
-
-fn sample(start: u32, x: i32, channel: u32) -> f32 {
-    let stride = (params.width + 3u) / 4u * 4u;
-    return moments[start + channel * stride + clamp_index(x, params.width)];
+    cross_term[y * stride + four] = repeat_last(params.inv_xy * m.m_xy, 4u * four, params.width);
 }

@@ -16,16 +16,23 @@ const SPAN = vec2u(4u, 1u);
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let x0 = id.x * SPAN.x;
-    if x0 >= params.width || id.y >= params.height {
-        return;
-    }
+    let stride = (params.width + 3u) / 4u;
     let last = params.width - 1u;
-    gray[id.y * ((params.width + 3u) / 4u) + id.x] = vec4f(
-        pixel(x0, id.y),
-        pixel(min(x0 + 1u, last), id.y),
-        pixel(min(x0 + 2u, last), id.y),
-        pixel(min(x0 + 3u, last), id.y),
-    );
+    var four: vec4f;
+    if params.format == 0u {
+        let word = frame[id.y * params.row_words + min(id.x, stride - 1u)];
+        four = repeat_last(vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)), x0, params.width);
+    } else {
+        four = vec4f(
+            pixel(min(x0, last), id.y),
+            pixel(min(x0 + 1u, last), id.y),
+            pixel(min(x0 + 2u, last), id.y),
+            pixel(min(x0 + 3u, last), id.y),
+        );
+    }
+    if id.x < stride && id.y < params.height {
+        gray[id.y * stride + id.x] = four;
+    }
 }
 
 fn byte(offset: u32) -> u32 {
@@ -35,7 +42,6 @@ fn byte(offset: u32) -> u32 {
 fn pixel(x: u32, y: u32) -> f32 {
     let row = 4u * params.row_words * y;
     switch params.format {
-        case 0u: { return f32(byte(row + x)); }
         case 1u: { return f32(byte(row + 2u * x) + 256u * byte(row + 2u * x + 1u)); }
         case 2u: { return luma(row + 3u * x); }
         default: { return luma(row + 4u * x); }

@@ -16,21 +16,22 @@ struct Params {
 
 const SPAN = vec2u(4u, 1u);
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(32, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let x0 = id.x * SPAN.x;
-    if x0 >= params.width || id.y >= params.height {
-        return;
-    }
     let stride = (params.width + 3u) / 4u;
-    let u = flow[2u * id.y * stride + id.x];
-    let v = flow[(2u * id.y + 1u) * stride + id.x];
-    let crosses = cross_term_0[id.y * stride + id.x];
+    let four = min(id.x, stride - 1u);
+    let x0 = four * SPAN.x;
+    let u = flow[2u * id.y * stride + four];
+    let v = flow[(2u * id.y + 1u) * stride + four];
+    let crosses = cross_term_0[id.y * stride + four];
     let last = params.width - 1u;
     let e0 = pixel(x0, id.y, crosses.x, vec2f(u.x, v.x));
     let e1 = pixel(min(x0 + 1u, last), id.y, crosses.y, vec2f(u.y, v.y));
     let e2 = pixel(min(x0 + 2u, last), id.y, crosses.z, vec2f(u.z, v.z));
     let e3 = pixel(min(x0 + 3u, last), id.y, crosses.w, vec2f(u.w, v.w));
+    if id.x >= stride {
+        return;
+    }
     let at = 5u * id.y * stride + id.x;
     equations[at] = vec4f(e0.g.x, e1.g.x, e2.g.x, e3.g.x);
     equations[at + stride] = vec4f(e0.g.y, e1.g.y, e2.g.y, e3.g.y);
@@ -67,8 +68,9 @@ fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let weight = border_weight(x, params.width) * border_weight(y, params.height);
     let a = weight * m.a;
     let b = weight * m.delta_b;
-    return Equations(
-        vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y),
-        vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y),
-    );
+    let g = vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y);
+    let h = vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y);
+    // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+    let known = all(abs(g) <= vec3f(1e30)) && all(abs(h) <= vec2f(1e30));
+    return Equations(select(vec3f(), g, known), select(vec2f(), h, known));
 }

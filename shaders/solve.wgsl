@@ -8,63 +8,75 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> columns: array<f32>;
-@group(0) @binding(2) var<storage, read> window: array<f32>; // weights from −radius to radius
+@group(0) @binding(1) var<storage, read> columns: array<vec4f>;
+@group(0) @binding(2) var<storage, read> window: array<vec4f>; // zeros up to a whole four, weights, then zeros
 @group(0) @binding(3) var<storage, read_write> flow: array<vec4f>;
 
-// Eight columns at a time: the window slides in registers, one new column a step.
-const SPAN = vec2u(8u, 1u);
-const MAX_TAPS = 1025u;
+// Sixteen columns at a time: the window slides in registers, four new columns a step.
+const SPAN = vec2u(16u, 1u);
+const MAX_STEPS = 258u;
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let x0 = id.x * SPAN.x;
-    if x0 >= params.width || id.y >= params.height {
-        return;
-    }
-    let g_xx = sums(x0, id.y, 0u);
-    let g_xy = sums(x0, id.y, 1u);
-    let g_yy = sums(x0, id.y, 2u);
-    let h_x = sums(x0, id.y, 3u);
-    let h_y = sums(x0, id.y, 4u);
-    store(x0, id.y, g_xx.left, g_xy.left, g_yy.left, h_x.left, h_y.left);
-    if x0 + 4u < params.width {
-        store(x0 + 4u, id.y, g_xx.right, g_xy.right, g_yy.right, h_x.right, h_y.right);
-    }
+    let four = 4u * id.x;
+    let y = min(id.y, params.height - 1u);
+    let g_xx = sums(four, y, 0u);
+    let g_xy = sums(four, y, 1u);
+    let g_yy = sums(four, y, 2u);
+    let h_x = sums(four, y, 3u);
+    let h_y = sums(four, y, 4u);
+    store(four, id.y, g_xx.a, g_xy.a, g_yy.a, h_x.a, h_y.a);
+    store(four + 1u, id.y, g_xx.b, g_xy.b, g_yy.b, h_x.b, h_y.b);
+    store(four + 2u, id.y, g_xx.c, g_xy.c, g_yy.c, h_x.c, h_y.c);
+    store(four + 3u, id.y, g_xx.d, g_xy.d, g_yy.d, h_x.d, h_y.d);
 }
 
-struct Eight {
-    left: vec4f,
-    right: vec4f,
+struct Sums {
+    a: vec4f,
+    b: vec4f,
+    c: vec4f,
+    d: vec4f,
 }
 
-fn sums(x0: u32, y: u32, channel: u32) -> Eight {
-    let start = (5u * y + channel) * ((params.width + 3u) / 4u * 4u);
-    let left = i32(x0) - i32(params.radius);
-    var a = vec4f(0.0, sample(start, left), sample(start, left + 1), sample(start, left + 2));
-    var b = vec4f(
-        sample(start, left + 3), sample(start, left + 4), sample(start, left + 5), sample(start, left + 6),
-    );
-    var sum = Eight();
-    for (var k = 0u; k < min(2u * params.radius + 1u, MAX_TAPS); k++) {
-        a = vec4f(a.yzw, b.x);
-        b = vec4f(b.yzw, sample(start, left + i32(k) + 7));
+// The averages of sixteen columns from the given four on.
+fn sums(four: u32, y: u32, channel: u32) -> Sums {
+    let reach = (params.radius + 3u) / 4u;
+    let row = (5u * y + channel) * ((params.width + 3u) / 4u);
+    var x = i32(four) - i32(reach);
+    var f0 = column(row, x);
+    var f1 = column(row, x + 1);
+    var f2 = column(row, x + 2);
+    var f3 = column(row, x + 3);
+    x += 4;
+    var s = Sums();
+    for (var k = 0u; k < min((4u * reach + params.radius + 4u) / 4u, MAX_STEPS); k++) {
+        let f4 = column(row, x);
         let w = window[k];
-        sum.left += w * a;
-        sum.right += w * b;
+        s.a += slide(f0, f1, w);
+        s.b += slide(f1, f2, w);
+        s.c += slide(f2, f3, w);
+        s.d += slide(f3, f4, w);
+        f0 = f1; f1 = f2; f2 = f3; f3 = f4;
+        x++;
     }
-    return sum;
+    return s;
 }
 
-fn sample(start: u32, x: i32) -> f32 {
-    return columns[start + clamp_index(x, params.width)];
+// Four columns; past the ends of the row the end's value.
+fn column(row: u32, four: i32) -> vec4f {
+    let last = i32((params.width + 3u) / 4u) - 1;
+    return repeat_ends(columns[row + u32(clamp(four, 0, last))], four, last);
 }
 
-fn store(x: u32, y: u32, g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, h_x: vec4f, h_y: vec4f) {
+fn store(four: u32, y: u32, g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, h_x: vec4f, h_y: vec4f) {
     let stride = (params.width + 3u) / 4u;
     let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + 1e-3);
-    flow[2u * y * stride + x / 4u] = repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), x, params.width);
-    flow[(2u * y + 1u) * stride + x / 4u] = repeat_last(known((g_xx * h_y - g_xy * h_x) * scale), x, params.width);
+    let u = repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), 4u * four, params.width);
+    let v = repeat_last(known((g_xx * h_y - g_xy * h_x) * scale), 4u * four, params.width);
+    if four < stride && y < params.height {
+        flow[2u * y * stride + four] = u;
+        flow[(2u * y + 1u) * stride + four] = v;
+    }
 }
 
 // What overflow left without a value counts as no motion, so that it cannot spread.

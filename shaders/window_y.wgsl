@@ -8,58 +8,64 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> equations: array<vec4f>;
-@group(0) @binding(2) var<storage, read> window: array<f32>; // weights from −radius to radius
+@group(0) @binding(2) var<storage, read> window: array<vec4f>; // weights from −radius to radius, then zeros
 @group(0) @binding(3) var<storage, read_write> columns: array<vec4f>;
 
-// Eight rows at a time: the window of rows slides in registers, one new row a step.
+// Eight rows at a time: the window of rows slides in registers, four new rows a step. One channel an invocation.
 const SPAN = vec2u(4u, 8u);
-const MAX_TAPS = 1025u;
+const SLICES = 5u;
+const MAX_STEPS = 257u;
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(32, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let y0 = id.y * SPAN.y;
-    if id.x * SPAN.x >= params.width || y0 >= params.height {
-        return;
+    let y0 = i32(id.y * SPAN.y);
+    var y = y0 - i32(params.radius);
+    var f0 = row(id, y);
+    var f1 = row(id, y + 1);
+    var f2 = row(id, y + 2);
+    var f3 = row(id, y + 3);
+    var f4 = row(id, y + 4);
+    var f5 = row(id, y + 5);
+    var f6 = row(id, y + 6);
+    var f7 = row(id, y + 7);
+    y += 8;
+    var s0 = vec4f(); var s1 = vec4f(); var s2 = vec4f(); var s3 = vec4f();
+    var s4 = vec4f(); var s5 = vec4f(); var s6 = vec4f(); var s7 = vec4f();
+    for (var k = 0u; k < min((2u * params.radius + 4u) / 4u, MAX_STEPS); k++) {
+        let f8 = row(id, y);
+        let f9 = row(id, y + 1);
+        let f10 = row(id, y + 2);
+        let f11 = row(id, y + 3);
+        let w = window[k];
+        s0 += w.x * f0 + w.y * f1 + w.z * f2 + w.w * f3;
+        s1 += w.x * f1 + w.y * f2 + w.z * f3 + w.w * f4;
+        s2 += w.x * f2 + w.y * f3 + w.z * f4 + w.w * f5;
+        s3 += w.x * f3 + w.y * f4 + w.z * f5 + w.w * f6;
+        s4 += w.x * f4 + w.y * f5 + w.z * f6 + w.w * f7;
+        s5 += w.x * f5 + w.y * f6 + w.z * f7 + w.w * f8;
+        s6 += w.x * f6 + w.y * f7 + w.z * f8 + w.w * f9;
+        s7 += w.x * f7 + w.y * f8 + w.z * f9 + w.w * f10;
+        f0 = f4; f1 = f5; f2 = f6; f3 = f7; f4 = f8; f5 = f9; f6 = f10; f7 = f11;
+        y += 4;
     }
-    let top = i32(y0) - i32(params.radius);
-    for (var channel = 0u; channel < 5u; channel++) {
-        var f0 = vec4f();
-        var f1 = row(id.x, top, channel);
-        var f2 = row(id.x, top + 1, channel);
-        var f3 = row(id.x, top + 2, channel);
-        var f4 = row(id.x, top + 3, channel);
-        var f5 = row(id.x, top + 4, channel);
-        var f6 = row(id.x, top + 5, channel);
-        var f7 = row(id.x, top + 6, channel);
-        var s0 = vec4f(); var s1 = vec4f(); var s2 = vec4f(); var s3 = vec4f();
-        var s4 = vec4f(); var s5 = vec4f(); var s6 = vec4f(); var s7 = vec4f();
-        for (var k = 0u; k < min(2u * params.radius + 1u, MAX_TAPS); k++) {
-            f0 = f1; f1 = f2; f2 = f3; f3 = f4; f4 = f5; f5 = f6; f6 = f7;
-            f7 = row(id.x, top + i32(k) + 7, channel);
-            let w = window[k];
-            s0 += w * f0; s1 += w * f1; s2 += w * f2; s3 += w * f3;
-            s4 += w * f4; s5 += w * f5; s6 += w * f6; s7 += w * f7;
-        }
-        store(id.x, y0, channel, s0);
-        store(id.x, y0 + 1u, channel, s1);
-        store(id.x, y0 + 2u, channel, s2);
-        store(id.x, y0 + 3u, channel, s3);
-        store(id.x, y0 + 4u, channel, s4);
-        store(id.x, y0 + 5u, channel, s5);
-        store(id.x, y0 + 6u, channel, s6);
-        store(id.x, y0 + 7u, channel, s7);
-    }
+    store(id, y0, s0);
+    store(id, y0 + 1, s1);
+    store(id, y0 + 2, s2);
+    store(id, y0 + 3, s3);
+    store(id, y0 + 4, s4);
+    store(id, y0 + 5, s5);
+    store(id, y0 + 6, s6);
+    store(id, y0 + 7, s7);
 }
 
-fn row(x4: u32, y: i32, channel: u32) -> vec4f {
+fn row(id: vec3u, y: i32) -> vec4f {
     let stride = (params.width + 3u) / 4u;
-    return equations[(5u * clamp_index(y, params.height) + channel) * stride + x4];
+    return equations[(SLICES * clamp_index(y, params.height) + id.z) * stride + min(id.x, stride - 1u)];
 }
 
-fn store(x4: u32, y: u32, channel: u32, sum: vec4f) {
-    if y >= params.height {
-        return;
-    }
+fn store(id: vec3u, y: i32, sum: vec4f) {
     let stride = (params.width + 3u) / 4u;
-    columns[(5u * y + channel) * stride + x4] = sum;
+    if id.x < stride && y < i32(params.height) {
+        columns[(SLICES * u32(y) + id.z) * stride + id.x] = sum;
+    }
 }

@@ -17,13 +17,15 @@ pub struct Shape {
     pub workgroup: [u32; 2],
     /// Pixels of an invocation in x and y: the shader's constant `SPAN`.
     pub span: [u32; 2],
+    /// Slices that invocations share out in z: the shader's constant `SLICES`, or 1.
+    pub slices: u32,
 }
 
 impl Shape {
     /// Workgroups for a picture of this many columns and rows.
-    pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 2] {
+    pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 3] {
         let count = |pixels: u32, axis: usize| pixels.div_ceil(self.workgroup[axis] * self.span[axis]);
-        [count(columns, 0), count(rows, 1)]
+        [count(columns, 0), count(rows, 1), self.slices]
     }
 }
 
@@ -65,7 +67,11 @@ pub fn reflect(kernel: &Kernel) -> Result<Shape> {
         problems.push("constant SPAN is missing, expected a vec2u of pixels of an invocation".to_owned());
         [1, 1]
     });
-    if problems.is_empty() { Ok(Shape { workgroup: [x, y], span }) } else { Err(fail(problems.join("; "))) }
+    if problems.is_empty() {
+        Ok(Shape { workgroup: [x, y], span, slices: slices(&module) })
+    } else {
+        Err(fail(problems.join("; ")))
+    }
 }
 
 fn check_bindings(
@@ -183,6 +189,14 @@ fn leaves_at_bound(module: &Module, function: &Function, statement: &Statement) 
         _ => constant(right),
     };
     leaves && bounded
+}
+
+fn slices(module: &Module) -> u32 {
+    let found = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("SLICES"));
+    match found.map(|(_, constant)| &module.global_expressions[constant.init]) {
+        Some(Expression::Literal(naga::Literal::U32(slices))) => *slices,
+        _ => 1,
+    }
 }
 
 fn span(module: &Module) -> Option<[u32; 2]> {

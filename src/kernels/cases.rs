@@ -20,7 +20,10 @@ impl Fill {
     /// All of them.
     pub const ALL: &'static [Self] = &[Self::Flat, Self::Textured, Self::Extreme, Self::Nan];
 
-    /// The `i`-th value of a picture whose legal values are from `low` to `high`.
+    /// Those that hold numbers only, for kernels whose inputs the kernel before keeps so.
+    pub const NUMBERS: &'static [Self] = &[Self::Flat, Self::Textured, Self::Extreme];
+
+    /// The next value of a picture whose legal values are from `low` to `high`.
     fn value(self, random: &mut Random, low: f32, high: f32) -> f32 {
         let share = random.next();
         match self {

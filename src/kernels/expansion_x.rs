@@ -5,7 +5,7 @@
 //! Gaussian applicability of his thesis (2002).
 
 use super::cases::{Fill, cases as each_fill, planes};
-use super::expansion_y::component;
+use super::expansion_y::power;
 use super::rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
 use super::tables;
 use crate::frame::Size;
@@ -32,7 +32,7 @@ params! {
 }
 
 kernel!(
-    "expansion_x" + ["image"],
+    "expansion_x" + ["image", "window"],
     reference(Params; moments, applicability) -> (quad, cross_term),
     cases: cases,
     tolerance: Tolerance {
@@ -61,10 +61,10 @@ fn reference(p: &Params, moments: &[f32], applicability: &[f32], quad: &mut [f32
         let Band { y0, out, second, scratch } = band;
         let (weights, scratch) = scratch.split_at_mut(3 * taps);
         let (columns, sums) = scratch.split_at_mut(3 * extended);
-        for (power, weights) in weights.chunks_exact_mut(taps).enumerate() {
-            component(applicability, power, weights);
+        for (n, weights) in weights.chunks_exact_mut(taps).enumerate() {
+            power(applicability, radius.next_multiple_of(4) - radius, n, weights);
         }
-        let [g, xg, xxg] = [0, 1, 2].map(|power| &weights[power * taps..][..taps]);
+        let [g, xg, xxg] = [0, 1, 2].map(|n| &weights[n * taps..][..taps]);
         for (i, (quad, cross_term)) in out.chunks_exact_mut(4 * stride).zip(second.chunks_exact_mut(stride)).enumerate() {
             for (channel, extended) in columns.chunks_exact_mut(extended).enumerate() {
                 extend_row(extended, &moments[(3 * (y0 + i) + channel) * stride..], width, radius);
@@ -101,7 +101,7 @@ fn solve(p: &Params, sums: &[f32], width: usize, quad: &mut [f32], cross_term: &
 fn cases(size: Size) -> Vec<Case> {
     let applicability = tables::applicability(5, 1.2);
     let params = Params::new(size, 5, &applicability);
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[4 * size.stride(), size.stride()], size, |fill| {
-        vec![planes(size, 3, fill, [0.0, 255.0], 3), applicability.weights.clone()]
+    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[4 * size.stride(), size.stride()], size, |fill| {
+        vec![planes(size, 3, fill, [0.0, 255.0], 3), tables::applicability_from(&applicability.weights, 8)]
     })
 }

@@ -33,11 +33,12 @@ kernel!(
     },
 );
 
-/// `weights` interleaves four values a sample; this takes one of them out of each.
+/// Takes the applicability times the n-th power of the distance out of its table, past `padding` leading zeros.
 #[inline(always)]
-pub(super) fn component(interleaved: &[f32], index: usize, out: &mut [f32]) {
-    for (out, four) in out.iter_mut().zip(interleaved.as_chunks::<4>().0) {
-        *out = four[index];
+pub(super) fn power(table: &[f32], padding: usize, n: usize, out: &mut [f32]) {
+    for (k, out) in out.iter_mut().enumerate() {
+        let sample = padding + k;
+        *out = table[12 * (sample / 4) + 4 * n + sample % 4];
     }
 }
 
@@ -48,7 +49,7 @@ fn reference(p: &Params, level: &[f32], applicability: &[f32], moments: &mut [f3
     let split = Split { scratch: taps, ..Split::rows_of(3 * stride) };
     bands(moments, &mut [], split, #[inline(always)] |band| {
         for channel in 0..3 {
-            component(applicability, channel, band.scratch);
+            power(applicability, 0, channel, band.scratch);
             for (i, rows) in band.out.chunks_exact_mut(3 * stride).enumerate() {
                 let first = (band.y0 + i) as isize - radius;
                 weighted_sum(&mut rows[channel * stride..][..stride], band.scratch, |k| {
@@ -61,6 +62,6 @@ fn reference(p: &Params, level: &[f32], applicability: &[f32], moments: &mut [f3
 
 fn cases(size: Size) -> Vec<Case> {
     let params = Params { width: size.width, height: size.height, radius: 5 };
-    let weights = tables::applicability(5, 1.2).weights;
-    gray_cases(size, Fill::ALL, bytemuck::bytes_of(&params), &[weights], &[3 * size.stride()], size)
+    let weights = tables::applicability_from(&tables::applicability(5, 1.2).weights, 5);
+    gray_cases(size, Fill::NUMBERS, bytemuck::bytes_of(&params), &[weights], &[3 * size.stride()], size)
 }

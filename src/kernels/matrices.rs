@@ -113,11 +113,14 @@ impl Models {
             let b_y = self.b_y[i] + a_xy * d[0][i] + a_yy * d[1][i];
             let w = weights[i];
             let (a_xx, a_xy, a_yy, b_x, b_y) = (w * a_xx, w * a_xy, w * a_yy, w * b_x, w * b_y);
-            out[0][i] = a_xx * a_xx + a_xy * a_xy;
-            out[1][i] = (a_xx + a_yy) * a_xy;
-            out[2][i] = a_yy * a_yy + a_xy * a_xy;
-            out[3][i] = a_xx * b_x + a_xy * b_y;
-            out[4][i] = a_xy * b_x + a_yy * b_y;
+            let g = [a_xx * a_xx + a_xy * a_xy, (a_xx + a_yy) * a_xy, a_yy * a_yy + a_xy * a_xy];
+            let h = [a_xx * b_x + a_xy * b_y, a_xy * b_x + a_yy * b_y];
+            let all = [g[0], g[1], g[2], h[0], h[1]];
+            // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+            let known = all.iter().fold(true, |known, value| known & (value.abs() <= 1e30));
+            for (channel, value) in all.into_iter().enumerate() {
+                out[channel][i] = if known { value } else { 0.0 };
+            }
         }
         out
     }

@@ -60,15 +60,23 @@ pub fn cover(inner: u32, out: u32) -> Vec<f32> {
 /// The window over which the equations are averaged: `2 · (size / 2) + 1` weights.
 ///
 /// A box has weights of `1 / size²` in both directions together, so of `1 / size` here; an even size has one sample more
-/// than its weights account for, as in OpenCV. The Gaussian has a sigma of `0.3 · (size / 2)`.
+/// than its weights account for, as in OpenCV. The Gaussian has a sigma of `0.3 · (size / 2)`. The size is at least 2.
 pub fn window(size: u32, gaussian: bool) -> Vec<f32> {
     let radius = size / 2;
     let taps = 2 * radius + 1;
     match gaussian {
-        true if radius == 0 => vec![1.0],
         true => gauss(0.3 * f64::from(radius), taps),
         false => vec![(1.0 / f64::from(size)) as f32; taps as usize],
     }
+}
+
+/// The window for a kernel that reads four samples at once, from the given number of samples before the centre on:
+/// zeros, the weights, and zeros up to a multiple of four.
+pub fn window_from(window: &[f32], before: usize) -> Vec<f32> {
+    let mut padded = vec![0.0; before - window.len() / 2];
+    padded.extend(window);
+    padded.resize(padded.len().next_multiple_of(4), 0.0);
+    padded
 }
 
 /// The applicability of the polynomial expansion and the inverse of its normal matrix.
@@ -84,6 +92,21 @@ pub struct Applicability {
     pub inv_xx: f32,
     /// Element (xy, xy).
     pub inv_xy: f32,
+}
+
+/// The applicability for a kernel that reads four samples at once, from the given number of samples before the centre on:
+/// four samples of g, four of x g, four of x² g, then the next, with zeros around them as in [`window_from`].
+pub fn applicability_from(weights: &[f32], before: usize) -> Vec<f32> {
+    let power = |n: usize| -> Vec<f32> {
+        let own: Vec<f32> = weights.as_chunks::<4>().0.iter().map(|four| four[n]).collect();
+        window_from(&own, before)
+    };
+    let powers = [power(0), power(1), power(2)];
+    (0..powers[0].len())
+        .step_by(4)
+        .flat_map(|i| powers.each_ref().map(|p| p[i..i + 4].to_vec()))
+        .flatten()
+        .collect()
 }
 
 /// The Gaussian applicability of the given radius and sigma, for the basis 1, x, y, x², y², xy.

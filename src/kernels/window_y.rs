@@ -1,4 +1,6 @@
 //! Columns of five channels averaged by a symmetric window: the vertical half of the neighbourhood's sum.
+//!
+//! The equations are numbers: [`matrices`](super::matrices) sees to it.
 
 use super::cases::{Fill, cases as each_fill, planes};
 use super::rows::{Split, bands, clamp_index, dimensions, weighted_sum};
@@ -46,7 +48,7 @@ fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32])
 
 fn cases(size: Size) -> Vec<Case> {
     let params = Params { width: size.width, height: size.height, radius: 6 };
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
-        vec![planes(size, 5, fill, [-100.0, 100.0], 11), tables::window(13, true)]
+    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
+        vec![planes(size, 5, fill, [-100.0, 100.0], 11), tables::window_from(&tables::window(13, true), 6)]
     })
 }

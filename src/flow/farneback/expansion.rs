@@ -26,7 +26,8 @@ pub(super) struct Expansions {
     format: PixelFormat,
     radius: u32,
     applicability: Applicability,
-    weights: BufId,
+    weights_y: BufId,
+    weights_x: BufId,
     gray: BufId,
     columns: BufId,
     image: BufId,
@@ -66,7 +67,17 @@ impl Expansions {
             size,
             format,
             radius: config.poly_n,
-            weights: bufs.constant("applicability", applicability.weights.clone()),
+            weights_y: bufs.constant(
+                "applicability, columns",
+                tables::applicability_from(&applicability.weights, config.poly_n as usize),
+            ),
+            weights_x: bufs.constant(
+                "applicability, rows",
+                tables::applicability_from(
+                    &applicability.weights,
+                    (config.poly_n as usize).next_multiple_of(4),
+                ),
+            ),
             applicability,
             gray: bufs.computed("gray", Shape::planar(size, 1)),
             columns: bufs.computed("smoothed columns", Shape::planar(size, 1)),
@@ -140,14 +151,14 @@ impl Expansions {
             &expansion_y::KERNEL,
             format!("level {k}"),
             expansion_y::Params { width: size.width, height: size.height, radius: self.radius },
-            &[self.image, self.weights],
+            &[self.image, self.weights_y],
             &[(self.moments, Shape::planar(size, 3))],
         ));
         steps.push(Step::new(
             &expansion_x::KERNEL,
             format!("level {k}"),
             expansion_x::Params::new(size, self.radius, &self.applicability),
-            &[self.moments, self.weights],
+            &[self.moments, self.weights_x],
             &[(quad, Shape::quads(size)), (cross_term, Shape::planar(size, 1))],
         ));
     }

@@ -12,7 +12,8 @@ pub(super) struct Motion {
     pyr_scale: f64,
     iterations: u32,
     radius: u32,
-    window: BufId,
+    window_y: BufId,
+    window_x: BufId,
     equations: BufId,
     columns: BufId,
     start: Start,
@@ -62,13 +63,15 @@ impl Motion {
                 ]
             }),
         };
+        let window = tables::window(config.winsize, config.window == Window::Gaussian);
+        let radius = window.len() / 2;
         Self {
             levels: levels.iter().enumerate().map(motion_level).collect(),
             pyr_scale: config.pyr_scale,
             iterations: config.iterations,
-            radius: config.winsize / 2,
-            window: bufs
-                .constant("window", tables::window(config.winsize, config.window == Window::Gaussian)),
+            radius: radius as u32,
+            window_y: bufs.constant("window, columns", tables::window_from(&window, radius)),
+            window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
             start,
@@ -169,14 +172,14 @@ impl Motion {
             &window_y::KERNEL,
             label.clone(),
             window_y::Params { width, height, radius: self.radius },
-            &[self.equations, self.window],
+            &[self.equations, self.window_y],
             &[(self.columns, five)],
         ));
         steps.push(Step::new(
             &solve::KERNEL,
             label,
             solve::Params { width, height, radius: self.radius },
-            &[self.columns, self.window],
+            &[self.columns, self.window_x],
             &[(flow, Shape::planar(level.size, 2))],
         ));
     }
