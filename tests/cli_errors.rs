@@ -101,8 +101,11 @@ fn outputs() {
         (&["o.flo", "--color", "missing/c.png"], &["missing"]),
         (&["o.flo", "--confidence", "c.flo"], &["c.flo", ".npy or .png"]),
         (&["o.png", "--color", "o.png"], &["o.png twice"]),
-        (&["o.flo", "--scale", "0"], &["--scale is 0"]),
-        (&["o.flo", "--scale", "NaN"], &["--scale is NaN"]),
+        (&["o.flo", "--color", "c.png", "--scale", "0"], &["--scale is 0"]),
+        (&["o.flo", "--color", "c.png", "--scale", "NaN"], &["--scale is NaN"]),
+        (&["o.flo", "--arrows", "r.png", "--arrow-gain", "-1"], &["--arrow-gain is -1"]),
+        (&["o.flo", "--scale", "3"], &["--color"]),
+        (&["-", "--json"], &["--json", "standard output"]),
         (&["o.flo", "--warm-start"], &["--warm-start"]),
     ] {
         refused(&folder, &[&pair[..], args].concat(), words);

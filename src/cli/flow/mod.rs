@@ -49,13 +49,19 @@ pub(super) struct Flow {
     #[arg(long, value_name = "PATH")]
     color: Option<PathBuf>,
     /// Length shown in full colour; without it the longest displacement of the first pair
-    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", allow_negative_numbers = true, requires = "color")]
     scale: Option<f32>,
     /// Write the first frame with arrows over it to this .png or into this folder
     #[arg(long, value_name = "PATH")]
     arrows: Option<PathBuf>,
     /// Length of an arrow against its displacement
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        requires = "arrows"
+    )]
     arrow_gain: f32,
     /// Write how far each pixel's flow is to be trusted, 0 to 1, to this .npy or .png or into this folder (as .npy)
     #[arg(long, value_name = "PATH")]
@@ -115,12 +121,18 @@ impl Flow {
         let done = compute(&mut engine, source, images, given, targets, &bar);
         bar.finish_and_clear();
         let report = done?;
-        let outputs = [&self.output, &self.color, &self.arrows, &self.confidence];
-        if outputs.iter().all(|path| path.as_deref() != Some(Path::new("-"))) {
-            let all = outputs.iter().all(|path| path.is_none());
-            report.print(self.json, all)?;
+        if !self.writes_to_stdout() {
+            report.print(self.json, self.outputs().iter().all(|path| path.is_none()))?;
         }
         Ok(Outcome::Done)
+    }
+
+    fn outputs(&self) -> [&Option<PathBuf>; 4] {
+        [&self.output, &self.color, &self.arrows, &self.confidence]
+    }
+
+    fn writes_to_stdout(&self) -> bool {
+        self.outputs().iter().any(|path| path.as_deref() == Some(Path::new("-")))
     }
 
     /// What would otherwise only be found after the first pair, or never.
@@ -129,6 +141,10 @@ impl Flow {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
                 return Err(Error::parameter(name, value, "a finite number over 0"));
             }
+        }
+        if self.json && self.writes_to_stdout() {
+            let expected = "none where results go to standard output";
+            return Err(Error::parameter("--json", "given", expected));
         }
         if single && self.warm_start {
             return Err(Error::parameter("--warm-start", "given", "a sequence of frames, not two pictures"));
