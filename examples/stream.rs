@@ -10,9 +10,9 @@ type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let mut frames = Frames::open(&args)?;
+    let mut frames = Frames::open(&args, None)?;
     let mut image = Image::default();
-    if !frames.next_into(&mut image)? {
+    if !frames.next_frame(&mut image)? {
         return Err("no frames".into());
     }
     let backend = match Gpu::new(&GpuOptions::default()) {
@@ -26,7 +26,7 @@ fn main() -> Result<(), Failure> {
     let mut engine = Engine::new(backend, image.size, &config)?;
     eprintln!("on {}", engine.adapter());
     let mut pending = engine.submit(&image.frame()?)?;
-    while frames.next_into(&mut image)? {
+    while frames.next_frame(&mut image)? {
         let next = engine.submit(&image.frame()?)?;
         show(&mut engine, pending)?;
         pending = next;
