@@ -83,7 +83,7 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
     let (frame_bytes, flow_bytes) =
         (4 * plan.buf(plan.frame).len as u64, 4 * Shape::planar(plan.size, 2).len() as u64);
     let buffer = |size, usage, mapped_at_creation| {
-        device.create_buffer(&BufferDescriptor { label: None, size, usage, mapped_at_creation })
+        device.create_buffer(&BufferDescriptor { label: Some("by hand"), size, usage, mapped_at_creation })
     };
     let upload = buffer(frame_bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC, true);
     let readback = buffer(flow_bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST, false);
@@ -100,10 +100,11 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
             exec.record_pair(&mut pass, i & 1);
         }
         encoder.copy_buffer_to_buffer(exec.buf(plan.flow[i & 1]), 0, &readback, 0, flow_bytes);
-        queue.submit([encoder.finish()]);
+        let submission_index = Some(queue.submit([encoder.finish()]));
         upload.map_async(MapMode::Write, .., |_| {});
         readback.map_async(MapMode::Read, .., |_| {});
-        device.poll(PollType::wait_indefinitely()).unwrap();
+        let timeout = Some(std::time::Duration::from_millis(20));
+        device.poll(PollType::Wait { submission_index, timeout }).unwrap();
         drop(readback.get_mapped_range(..).unwrap());
         readback.unmap();
     })

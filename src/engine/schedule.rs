@@ -125,12 +125,19 @@ impl Engine {
     /// Computes or waits until a frame is done, or the time has come. True if it is done.
     pub(super) fn bring(&mut self, frame: u64, wait: bool, until: Option<Instant>) -> Result<bool> {
         loop {
-            self.refresh()?;
+            // Who waits sees what is done by waiting.
+            if !wait {
+                self.refresh()?;
+            }
             let done = |flight: &Flight| flight.frame == frame && matches!(flight.state, State::Done(_));
-            if self.flights.list.iter().any(done) {
+            let done = self.flights.list.iter().any(done);
+            // On the CPU the next frame can wait, and be dropped.
+            if !done || self.stream.is_gpu() {
+                self.start_waiting()?;
+            }
+            if done {
                 return Ok(true);
             }
-            self.start_waiting()?;
             let Some((place, slot, job)) = self.flights.started() else {
                 return Ok(false);
             };
