@@ -3,8 +3,11 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3; the border's weights and
 //! what happens outside the picture are OpenCV's.
 
+use glam::Vec4;
+
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::pair::{Pair, border_weight, fours};
+use super::rows::{Split, bands, dimensions};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -19,7 +22,7 @@ params! {
 }
 
 kernel!(
-    "matrices" + ["image", "equations"],
+    "matrices" + ["image", "equations", "second"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, flow) -> (equations),
     cases: cases,
     tolerance: Tolerance {
@@ -29,19 +32,6 @@ kernel!(
                  cases, and h sums products of two of them and of the flow",
     },
 );
-
-/// Pixels worked on side by side.
-const LANES: usize = 16;
-
-/// The model of [`LANES`] pixels: the mean of A, and half the difference of b, before the flow so far is added.
-#[derive(Default)]
-struct Models {
-    b_x: [f32; LANES],
-    b_y: [f32; LANES],
-    a_xx: [f32; LANES],
-    a_yy: [f32; LANES],
-    a_xy: [f32; LANES],
-}
 
 fn reference(
     p: &Params,
@@ -53,124 +43,38 @@ fn reference(
     equations: &mut [f32],
 ) {
     let (width, height, stride) = dimensions(p.width, p.height);
-    let second = Second { quad: quad_1.as_chunks().0, cross_term: cross_term_1, width, height, stride };
-    let quad_0 = quad_0.as_chunks::<4>().0;
-    bands(equations, &mut [], Split::rows_of(5 * stride), #[inline(always)] |band| {
+    let pair =
+        Pair { quad_0: fours(quad_0), cross_term_0, quad_1: fours(quad_1), cross_term_1, width, height, stride };
+    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
+    bands(equations, &mut [], split, #[inline(always)] |band| {
+        for (x, weight) in band.scratch.iter_mut().enumerate() {
+            *weight = border_weight(x.min(width - 1), width);
+        }
         for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
             let y = band.y0 + i;
-            let quad_0 = &quad_0[y * stride..][..width];
-            let cross_term_0 = &cross_term_0[y * stride..][..width];
-            let (u, v) = flow[2 * y * stride..][..2 * stride].split_at(stride);
             let weight_y = border_weight(y, height);
-            for x0 in (0..width).step_by(LANES) {
-                let count = LANES.min(width - x0);
-                let mut models = Models::default();
-                let mut d = [[0.0; LANES]; 2];
-                let mut weights = [0.0; LANES];
-                d[0][..count].copy_from_slice(&u[x0..x0 + count]);
-                d[1][..count].copy_from_slice(&v[x0..x0 + count]);
-                for i in 0..count {
-                    let x = x0 + i;
-                    let at = [x as f32 + d[0][i], y as f32 + d[1][i]];
-                    models.set(i, &quad_0[x], cross_term_0[x], second.at(at));
-                    weights[i] = weight_y * border_weight(x, width);
+            let (u, v) = fours(&flow[2 * y * stride..][..2 * stride]).split_at(stride / 4);
+            let out = rows.as_chunks_mut::<4>().0;
+            for four in 0..stride / 4 {
+                let d = [u[four], v[four]].map(Vec4::from_array);
+                let mut model = pair.model(four, y, d);
+                let weight = weight_y * Vec4::from_array(fours(band.scratch)[four]);
+                let b_x = weight * (model.b_x + model.a_xx * d[0] + model.a_xy * d[1]);
+                let b_y = weight * (model.b_y + model.a_xy * d[0] + model.a_yy * d[1]);
+                for a in [&mut model.a_xx, &mut model.a_xy, &mut model.a_yy] {
+                    *a *= weight;
                 }
-                for (channel, values) in models.equations(&d, &weights).iter().enumerate() {
-                    rows[channel * stride + x0..][..count].copy_from_slice(&values[..count]);
+                let g = model.squared();
+                let h = [model.a_xx * b_x + model.a_xy * b_y, model.a_xy * b_x + model.a_yy * b_y];
+                // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+                let size = g[0].abs() + g[1].abs() + g[2].abs() + h[0].abs() + h[1].abs();
+                let known = size.cmple(Vec4::splat(1e30));
+                for (channel, value) in [g[0], g[1], g[2], h[0], h[1]].into_iter().enumerate() {
+                    out[channel * (stride / 4) + four] = Vec4::select(known, value, Vec4::ZERO).to_array();
                 }
-            }
-            for channel in rows.chunks_exact_mut(stride) {
-                repeat_last(channel, width);
             }
         }
     });
-}
-
-impl Models {
-    /// The model of one pixel: where the second frame has no expansion, the first one's stands alone and says nothing
-    /// of motion.
-    #[inline(always)]
-    fn set(&mut self, i: usize, quad_0: &[f32; 4], cross_term_0: f32, second: Option<([f32; 4], f32)>) {
-        let (quad, cross_term) = match second {
-            Some((quad_1, cross_term_1)) => {
-                let sign = [-1.0, -1.0, 1.0, 1.0];
-                let half = |c: usize| 0.5 * (quad_0[c] + sign[c] * quad_1[c]);
-                ([half(0), half(1), half(2), half(3)], 0.25 * (cross_term_0 + cross_term_1))
-            }
-            None => ([0.5 * quad_0[0], 0.5 * quad_0[1], quad_0[2], quad_0[3]], 0.5 * cross_term_0),
-        };
-        [self.b_x[i], self.b_y[i], self.a_xx[i], self.a_yy[i]] = quad;
-        self.a_xy[i] = cross_term;
-    }
-
-    /// G = AᵀA and h = AᵀΔb with Δb = b + A d: channels xx, xy, yy, x, y.
-    #[inline(always)]
-    fn equations(&self, d: &[[f32; LANES]; 2], weights: &[f32; LANES]) -> [[f32; LANES]; 5] {
-        let mut out = [[0.0; LANES]; 5];
-        for i in 0..LANES {
-            let (a_xx, a_xy, a_yy) = (self.a_xx[i], self.a_xy[i], self.a_yy[i]);
-            let b_x = self.b_x[i] + a_xx * d[0][i] + a_xy * d[1][i];
-            let b_y = self.b_y[i] + a_xy * d[0][i] + a_yy * d[1][i];
-            let w = weights[i];
-            let (a_xx, a_xy, a_yy, b_x, b_y) = (w * a_xx, w * a_xy, w * a_yy, w * b_x, w * b_y);
-            let g = [a_xx * a_xx + a_xy * a_xy, (a_xx + a_yy) * a_xy, a_yy * a_yy + a_xy * a_xy];
-            let h = [a_xx * b_x + a_xy * b_y, a_xy * b_x + a_yy * b_y];
-            let all = [g[0], g[1], g[2], h[0], h[1]];
-            // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
-            let known = all.iter().fold(true, |known, value| known & (value.abs() <= 1e30));
-            for (channel, value) in all.into_iter().enumerate() {
-                out[channel][i] = if known { value } else { 0.0 };
-            }
-        }
-        out
-    }
-}
-
-/// The second frame's expansion, to be read between pixels.
-struct Second<'a> {
-    quad: &'a [[f32; 4]],
-    cross_term: &'a [f32],
-    width: usize,
-    height: usize,
-    stride: usize,
-}
-
-impl Second<'_> {
-    /// The expansion at a place between four pixels, or nothing where there are not four around it.
-    #[inline(always)]
-    fn at(&self, [x, y]: [f32; 2]) -> Option<([f32; 4], f32)> {
-        let inside = x >= 0.0 && y >= 0.0 && x < (self.width - 1) as f32 && y < (self.height - 1) as f32;
-        if !inside {
-            return None;
-        }
-        let (left, above) = (x as usize, y as usize);
-        let (fx, fy) = (x - left as f32, y - above as f32);
-        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-        let i = above * self.stride + left;
-        let (quad_above, quad_below) = (&self.quad[i..i + 2], &self.quad[i + self.stride..][..2]);
-        let quads = [&quad_above[0], &quad_above[1], &quad_below[0], &quad_below[1]];
-        let mut quad = [0.0; 4];
-        for (q, w) in quads.into_iter().zip(weights) {
-            for c in 0..4 {
-                quad[c] += w * q[c];
-            }
-        }
-        let (above, below) = (&self.cross_term[i..i + 2], &self.cross_term[i + self.stride..][..2]);
-        let cross_term =
-            weights[0] * above[0] + weights[1] * above[1] + weights[2] * below[0] + weights[3] * below[1];
-        Some((quad, cross_term))
-    }
-}
-
-/// How much pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
-#[inline(always)]
-fn border_weight(i: usize, n: usize) -> f32 {
-    let step = |distance: usize| match distance {
-        0 | 1 => 0.14,
-        2..=4 => 0.4472,
-        _ => 1.0,
-    };
-    step(i) * step(n - 1 - i)
 }
 
 fn cases(size: Size) -> Vec<Case> {
