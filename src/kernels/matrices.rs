@@ -3,10 +3,8 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3; the border's weights and
 //! what happens outside the picture are OpenCV's.
 
-use glam::Vec4;
-
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::pair::{Pair, border_weight, fours};
+use super::pair::{BLOCK, Block, Model, Pair, border_weight, each_block, fours, squared};
 use super::rows::{Split, bands, dimensions};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
@@ -53,28 +51,28 @@ fn reference(
         for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
             let y = band.y0 + i;
             let weight_y = border_weight(y, height);
-            let (u, v) = fours(&flow[2 * y * stride..][..2 * stride]).split_at(stride / 4);
-            let out = rows.as_chunks_mut::<4>().0;
-            for four in 0..stride / 4 {
-                let d = [u[four], v[four]].map(Vec4::from_array);
-                let mut model = pair.model(four, y, d);
-                let weight = weight_y * Vec4::from_array(fours(band.scratch)[four]);
-                let b_x = weight * (model.b_x + model.a_xx * d[0] + model.a_xy * d[1]);
-                let b_y = weight * (model.b_y + model.a_xy * d[0] + model.a_yy * d[1]);
-                for a in [&mut model.a_xx, &mut model.a_xy, &mut model.a_yy] {
-                    *a *= weight;
-                }
-                let g = model.squared();
-                let h = [model.a_xx * b_x + model.a_xy * b_y, model.a_xy * b_x + model.a_yy * b_y];
-                // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
-                let size = g[0].abs() + g[1].abs() + g[2].abs() + h[0].abs() + h[1].abs();
-                let known = size.cmple(Vec4::splat(1e30));
-                for (channel, value) in [g[0], g[1], g[2], h[0], h[1]].into_iter().enumerate() {
-                    out[channel * (stride / 4) + four] = Vec4::select(known, value, Vec4::ZERO).to_array();
-                }
-            }
+            each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, #[inline(always)] |x0, u, v| {
+                equations_of(&pair.model(x0, y, u, v), u, v, &band.scratch[x0..][..u.len()], weight_y)
+            });
         }
     });
+}
+
+/// G = AᵀA and h = AᵀΔb with Δb = b + A d: channels xx, xy, yy, x, y.
+#[inline(always)]
+fn equations_of(model: &Model, u: &[f32], v: &[f32], weights_x: &[f32], weight_y: f32) -> [Block; 5] {
+    let mut channels = [[0.0; BLOCK]; 5];
+    for (i, ((u, v), weight_x)) in u.iter().zip(v).zip(weights_x).enumerate() {
+        let w = weight_x * weight_y;
+        let (a_xx, a_xy, a_yy) = (model.a_xx[i], model.a_xy[i], model.a_yy[i]);
+        let b_x = w * (model.b_x[i] + a_xx * u + a_xy * v);
+        let b_y = w * (model.b_y[i] + a_xy * u + a_yy * v);
+        let (a_xx, a_xy, a_yy) = (w * a_xx, w * a_xy, w * a_yy);
+        [channels[0][i], channels[1][i], channels[2][i]] = squared(a_xx, a_xy, a_yy);
+        channels[3][i] = a_xx * b_x + a_xy * b_y;
+        channels[4][i] = a_xy * b_x + a_yy * b_y;
+    }
+    channels
 }
 
 fn cases(size: Size) -> Vec<Case> {

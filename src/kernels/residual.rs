@@ -3,10 +3,8 @@
 //! Channels of the result: AᵀA (xx, xy, yy), the square of what the flow leaves of Δb = −½ (b2 − b1), and 1 where both
 //! frames show the place, times the first frame's certainty, which all of them are weighted with.
 
-use glam::Vec4;
-
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::pair::{Pair, border_weight, fours};
+use super::pair::{BLOCK, Pair, border_weight, each_block, fours, squared};
 use super::rows::{Split, bands, dimensions};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
@@ -55,26 +53,20 @@ fn reference(
         for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
             let y = band.y0 + i;
             let weight_y = border_weight(y, height);
-            let (u, v) = fours(&flow[2 * y * stride..][..2 * stride]).split_at(stride / 4);
-            let certainty = &fours(certainty)[y * stride / 4..][..stride / 4];
-            let out = rows.as_chunks_mut::<4>().0;
-            for four in 0..stride / 4 {
-                let mut model = pair.model(four, y, [u[four], v[four]].map(Vec4::from_array));
-                let share = Vec4::select(model.inside, Vec4::from_array(certainty[four]), Vec4::ZERO);
-                let weight = share * weight_y * Vec4::from_array(fours(band.scratch)[four]);
-                for term in
-                    [&mut model.a_xx, &mut model.a_xy, &mut model.a_yy, &mut model.b_x, &mut model.b_y]
-                {
-                    *term *= weight;
+            each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, #[inline(always)] |x0, u, v| {
+                let model = pair.model(x0, y, u, v);
+                let mut channels = [[0.0; BLOCK]; 5];
+                for (i, weight_x) in band.scratch[x0..][..u.len()].iter().enumerate() {
+                    let share = model.inside[i] * certainty[y * stride + x0 + i];
+                    let w = share * weight_x * weight_y;
+                    let (b_x, b_y) = (w * model.b_x[i], w * model.b_y[i]);
+                    [channels[0][i], channels[1][i], channels[2][i]] =
+                        squared(w * model.a_xx[i], w * model.a_xy[i], w * model.a_yy[i]);
+                    channels[3][i] = b_x * b_x + b_y * b_y;
+                    channels[4][i] = share;
                 }
-                let g = model.squared();
-                let rest = model.b_x * model.b_x + model.b_y * model.b_y;
-                let size = g[0].abs() + g[1].abs() + g[2].abs() + rest;
-                let known = size.cmple(Vec4::splat(1e30));
-                for (channel, value) in [g[0], g[1], g[2], rest, share].into_iter().enumerate() {
-                    out[channel * (stride / 4) + four] = Vec4::select(known, value, Vec4::ZERO).to_array();
-                }
-            }
+                channels
+            });
         }
     });
 }
