@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::plan::Plan;
 
 /// How long the GPU is waited for at once, so that a loss does not go unnoticed.
-const SLICE: Duration = Duration::from_millis(20);
+const SLICE: Duration = Duration::from_millis(100);
 
 /// What computes the frames.
 pub(super) enum Stream {

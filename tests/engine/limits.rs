@@ -130,10 +130,21 @@ fn a_late_frame_may_be_asked_for_again() {
         let expected = flows(&mut engine(&backend, size, &Config::default()), &images);
         let config = Config { deadline: Some(Duration::ZERO), ..Config::default() };
         let mut engine = engine(&backend, size, &config);
-        engine.submit(&images[0].frame().unwrap()).unwrap();
-        let ticket = engine.submit(&images[1].frame().unwrap()).unwrap();
-        let error = engine.wait(ticket).unwrap_err();
-        assert!(matches!(error, Error::Timeout { frame: 1, deadline_ms: 0, .. }), "{name}: {error}");
+        // A GPU may be done before the host has asked, but not every time.
+        let late = (0..50).find_map(|_| {
+            engine.reset();
+            let first = engine.submit(&images[0].frame().unwrap()).unwrap();
+            let second = engine.submit(&images[1].frame().unwrap()).unwrap();
+            let error = engine.wait(second).err();
+            while matches!(engine.wait(first), Err(Error::Timeout { .. })) {}
+            error.map(|error| (second, error))
+        });
+        let (ticket, error) = late.expect(name);
+        let expected_frame = ticket.frame();
+        assert!(
+            matches!(error, Error::Timeout { frame, deadline_ms: 0, .. } if frame == expected_frame),
+            "{name}: {error}"
+        );
         let begin = Instant::now();
         let flow = loop {
             match engine.wait(ticket) {
@@ -157,13 +168,14 @@ fn a_frame_that_is_late_in_process_is_given_up() {
         for image in images.iter().cycle().take(6) {
             match engine.process(&image.frame().unwrap()) {
                 Err(Error::Timeout { .. }) => {}
-                // The GPU may still be busy with those that were given up.
-                Err(Error::Busy { .. }) if name == "GPU" => {}
+                // The GPU may be done at once, or still be busy with those that were given up.
+                Ok(_) | Err(Error::Busy { .. }) if name == "GPU" => {}
                 other => panic!("{name}: {other:?}"),
             }
         }
         let stats = engine.stats();
-        assert_eq!(stats.dropped, stats.submitted, "{name}");
+        assert_eq!(stats.dropped + stats.done, stats.submitted, "{name}");
+        assert!(name == "GPU" || stats.dropped == 6, "{name}: {stats:?}");
         assert_eq!(stats.timeouts, stats.dropped, "{name}");
     }
 }
