@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::eval::Scene;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Size, Y4mWriter, flo, picture, read_flow};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Size, Y4mWriter, flo, npy, picture, read_flow};
 
 const SIZE: Size = Size::new(72, 50);
 
@@ -117,6 +117,25 @@ fn two_pictures_give_the_flow_between_them() {
     }
     let stdout = run(&folder, &["flow", "0.png", "1.png", "-o", "-"]).well().stdout;
     assert_eq!(stdout, fs::read(folder.path().join("a.flo")).unwrap());
+}
+
+#[test]
+fn the_confidence_is_low_where_there_is_nothing_to_see() {
+    let folder = frames();
+    for number in 0..2 {
+        let mut image = Scene::new(SIZE).unwrap().frame(number);
+        image.data.chunks_mut(72).for_each(|row| row[..36].fill(128));
+        picture::write_png(folder.path().join(format!("half{number}.png")), &image).unwrap();
+    }
+    let args = ["flow", "half0.png", "half1.png", "--backend", "cpu", "--confidence"];
+    assert!(run(&folder, &[&args[..], &["c.npy"]].concat()).well().text().is_empty());
+    let plane = npy::read_plane(folder.path().join("c.npy")).unwrap();
+    assert_eq!(plane.size, SIZE);
+    let at = |x: usize| plane.data[25 * 72 + x];
+    assert!(at(8) < 0.1 && at(54) > 0.5 && at(54) <= 1.0, "{} {}", at(8), at(54));
+    run(&folder, &[&args[..], &["c.png"]].concat()).well();
+    let image = picture::read(folder.path().join("c.png")).unwrap();
+    assert_eq!(image.data[25 * 72 + 54], (255.0 * at(54)).round() as u8);
 }
 
 #[test]
@@ -226,6 +245,7 @@ fn the_executors_are_compared_and_a_breach_ends_with_1() {
     assert!(json["flow"]["max"].as_f64().unwrap() < 1e-2, "{}", json["flow"]);
     let text = run(&folder, &["crosscheck", "0.png", "1.png", "--steps"]).well().text();
     assert!(text.contains("every value of every step") && text.contains("solve (frame 1, level 0"), "{text}");
+    assert!(text.contains("confidence (frame 1, confidence): confidence"), "{text}");
     // The same bits on both sides are not promised: the last digit of a division or a square root is the driver's.
     let ended = run(&folder, &["crosscheck", "0.png", "1.png", "--bounds", "0"]);
     let differs = !ended.text().contains("first step that differs at all: none");
@@ -302,9 +322,16 @@ fn the_demo_needs_no_gpu_and_says_what_it_computes_on() {
     for word in ["mean endpoint error", "frames a second", "pictures   in d"] {
         assert!(text.contains(word), "{text}");
     }
-    for name in
-        ["arrows.png", "color.png", "error.png", "flow.flo", "frame_0.png", "frame_1.png", "truth.png"]
-    {
+    for name in [
+        "arrows.png",
+        "color.png",
+        "confidence.png",
+        "error.png",
+        "flow.flo",
+        "frame_0.png",
+        "frame_1.png",
+        "truth.png",
+    ] {
         assert!(folder.path().join("d").join(name).is_file(), "{name}");
     }
     if has_adapter_without_vulkan(folder.path()) {

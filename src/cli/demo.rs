@@ -71,14 +71,14 @@ impl Demo {
         let truth = scene.flow(0);
 
         engine.process(&pair[0].frame()?)?;
-        let (flow, confidence) = match engine.process(&pair[1].frame()?)? {
-            Some(output) => (output.flow.cloned(), output.confidence.cloned()),
-            None => (None, None),
-        };
-        let flow = flow.ok_or_else(|| Error::parameter("flow", "missing", "one for the second frame"))?;
+        let computed = engine
+            .process(&pair[1].frame()?)?
+            .and_then(|output| Some((output.flow?.clone(), output.confidence?.clone())));
+        let (flow, confidence) =
+            computed.ok_or_else(|| Error::parameter("flow", "missing", "one for the second frame"))?;
         let error = flow_error(&truth, &flow, None)?;
         fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
-        let scale = write(&self.output, &pair, &truth, &flow, confidence.as_ref())?;
+        let scale = write(&self.output, &pair, &truth, &flow, &confidence)?;
 
         let mut times = Vec::new();
         for number in 2..2 + STREAMED {
@@ -128,7 +128,7 @@ fn write(
     pair: &[Image; 2],
     truth: &FlowField,
     flow: &FlowField,
-    confidence: Option<&Plane>,
+    confidence: &Plane,
 ) -> Result<f32> {
     let (truth_colours, scale) = colour_wheel(truth, None)?;
     let (colours, _) = colour_wheel(flow, Some(scale))?;
@@ -144,11 +144,9 @@ fn write(
         ("truth.png", &truth_colours),
         ("arrows.png", &drawn),
         ("error.png", &gray(&error)),
+        ("confidence.png", &gray(confidence)),
     ] {
         picture::write_png(folder.join(name), image)?;
-    }
-    if let Some(confidence) = confidence {
-        picture::write_png(folder.join("confidence.png"), &gray(confidence))?;
     }
     flo::write(folder.join("flow.flo"), flow)?;
     Ok(scale)

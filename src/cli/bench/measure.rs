@@ -217,8 +217,10 @@ mod tests {
         let moved = moved(&plan);
         // A frame of bytes in, a plane of f32 out.
         assert_eq!(moved["luma"], (1, 64 * 64 * 5));
-        // Two levels: a plane in, three out, at both sizes; and the weights of radius 5.
-        let weights = plan.bufs.iter().find(|buf| buf.name == "applicability").unwrap().len as u64;
+        // Two levels, each with a plane in, three out, and its weights.
+        let step = plan.ingest[0].iter().find(|step| step.kernel.name == "expansion_y").unwrap();
+        let weights = plan.buf(step.inputs[1]).len as u64;
+        assert!(weights < 100, "{weights}");
         let planes = 4 * 4 * (64 * 64 + 32 * 32);
         assert_eq!(moved["expansion_y"], (2, planes + 2 * 4 * weights));
     }
