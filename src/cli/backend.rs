@@ -32,8 +32,18 @@ pub(super) enum BackendArg {
 impl BackendArgs {
     /// What to compute on. Says on stderr which it is.
     pub(super) fn open(&self) -> Result<Backend> {
+        self.open_with(&GpuOptions::default())
+    }
+
+    /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
+    /// counts for more than speed.
+    pub(super) fn open_for_shaders(&self) -> Result<Backend> {
+        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() })
+    }
+
+    fn open_with(&self, default: &GpuOptions) -> Result<Backend> {
         let backend = match (self.backend, &self.adapter) {
-            (None, None) => match Gpu::new(&GpuOptions::default()) {
+            (None, None) => match Gpu::new(default) {
                 Ok(gpu) => Backend::Gpu(gpu),
                 Err(Error::NoAdapter { reason }) => {
                     print::note(format_args!("computing on the CPU; no usable GPU adapter: {reason}"));

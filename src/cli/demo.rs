@@ -24,7 +24,8 @@ const WHITE_ERROR: f32 = 1.0;
 /// Compute the flow of a made-up scene whose motion is known, and show it.
 ///
 /// Writes frame_0.png, frame_1.png, flow.flo, color.png, truth.png (both to one scale), arrows.png, error.png (white is
-/// 1 px or more) and confidence.png, and prints how accurate and how fast it was. Needs no GPU.
+/// 1 px or more) and confidence.png, and prints how accurate and how fast it was. Computes on any adapter there is, also on
+/// one that computes on the CPU such as lavapipe; without one, on the CPU backend.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -65,7 +66,7 @@ impl Demo {
         let mut config = Config { flow: self.flow.farneback()?, ..Config::default() };
         config.flow.confidence = true;
         input::folder(&self.output)?;
-        let mut engine = Engine::new(self.backend.open()?, self.size, &config)?;
+        let mut engine = Engine::new(self.backend.open_for_shaders()?, self.size, &config)?;
         let scene = Scene::new(self.size)?;
         let pair = [scene.frame(0), scene.frame(1)];
         let truth = scene.flow(0);
