@@ -5,15 +5,19 @@ mod executor;
 mod reflect;
 
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 pub use adapter::{AdapterName, GpuOptions, adapters};
 pub use executor::GpuExecutor;
 pub use reflect::{Shape, reflect};
-use wgpu::{Device, Features, Limits, Queue};
+use wgpu::{Device, Features, Limits, PollType, Queue};
 
 use crate::error::{Error, Result};
 use crate::kernel::Kernel;
 use crate::kernels::compare::POISON;
+
+/// How long one thread keeps others from polling.
+const SLICE: Duration = Duration::from_millis(5);
 
 /// A device to compute on.
 ///
@@ -24,6 +28,7 @@ pub struct Gpu {
     pub(crate) queue: Queue,
     name: AdapterName,
     lost: Arc<Mutex<Option<String>>>,
+    polling: Arc<Mutex<()>>,
     /// How the device can be had again, if it is this crate's.
     options: Option<GpuOptions>,
 }
@@ -76,7 +81,7 @@ impl Gpu {
                 if message.is_empty() { format!("{reason:?}") } else { format!("{reason:?}: {message}") };
             *note.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(text);
         });
-        Self { device, queue, name, lost, options: None }
+        Self { device, queue, name, lost, polling: Arc::default(), options: None }
     }
 
     /// Opens a device like this one anew, after a loss.
@@ -130,13 +135,34 @@ impl Gpu {
     /// # Errors
     /// [`Error::DeviceLost`] if the device was lost.
     pub fn finish(&self) -> Result<()> {
-        self.poll(wgpu::PollType::wait_indefinitely()).map(|_| ())
+        self.poll(PollType::wait_indefinitely()).map(|_| ())
     }
 
     /// Polls the device. True if what was waited for is done, or if nothing submitted is left to do.
-    pub(crate) fn poll(&self, kind: wgpu::PollType) -> Result<bool> {
-        // wgpu panics where the driver reports a loss or is out of memory.
+    pub(crate) fn poll(&self, kind: PollType) -> Result<bool> {
+        let PollType::Wait { submission_index, timeout } = kind else {
+            return self.poll_once(kind);
+        };
+        let deadline = timeout.map(|timeout| Instant::now() + timeout);
+        loop {
+            let left = deadline.map_or(SLICE, |deadline| deadline.saturating_duration_since(Instant::now()));
+            let slice =
+                PollType::Wait { submission_index: submission_index.clone(), timeout: Some(left.min(SLICE)) };
+            if self.poll_once(slice)? {
+                return Ok(true);
+            }
+            if left.is_zero() {
+                return Ok(false);
+            }
+        }
+    }
+
+    fn poll_once(&self, kind: PollType) -> Result<bool> {
+        // wgpu asserts that nobody else empties the queue while it polls: one thread at a time, for a slice of time.
+        let alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // It also panics where the driver reports a loss or is out of memory.
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
+        drop(alone);
         match polled {
             Ok(Ok(status)) => match self.lost() {
                 Some(_) => Err(self.lost_error("")),
