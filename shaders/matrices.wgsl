@@ -46,29 +46,13 @@ struct Equations {
 }
 
 fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
-    let stride = (params.width + 3u) / 4u * 4u;
-    let first = Expansion(quad_0[y * stride + x], cross_term);
-    let place = vec2f(f32(x), f32(y)) + d;
-    let whole = floor(place);
-    // A place that is not a number is not inside either.
-    let inside = all(whole >= vec2f()) && all(whole < vec2f(f32(params.width), f32(params.height)) - 1.0);
-    let at = vec2u(select(vec2f(), whole, inside));
-    let i = at.y * stride + at.x;
-    // One past the end only where a picture is one pixel wide or high, and then nothing is inside.
-    let right = select(0u, 1u, inside);
-    let below = select(0u, stride, inside);
-    let second = bilinear(
-        Expansion(quad_1[i], cross_term_1[i]),
-        Expansion(quad_1[i + right], cross_term_1[i + right]),
-        Expansion(quad_1[i + below], cross_term_1[i + below]),
-        Expansion(quad_1[i + below + right], cross_term_1[i + below + right]),
-        place - whole,
-    );
-    let m = model(first, second, inside, d);
+    let first = Expansion(quad_0[y * ((params.width + 3u) / 4u * 4u) + x], cross_term);
+    let second = second_at(vec2f(f32(x), f32(y)) + d);
+    let m = model(first, second, d);
     let weight = border_weight(x, params.width) * border_weight(y, params.height);
     let a = weight * m.a;
     let b = weight * m.delta_b;
-    let g = vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y);
+    let g = squared(a);
     let h = vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y);
     // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
     let known = dot(abs(g), vec3f(1.0)) + dot(abs(h), vec2f(1.0)) <= 1e30;

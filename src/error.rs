@@ -85,6 +85,16 @@ pub enum Error {
         /// The adapter that sets the limit.
         adapter: String,
     },
+    /// The adapter has no room for all of an engine's buffers.
+    #[error("{adapter} has no room for frames of {size}: {needed} bytes needed")]
+    OutOfMemory {
+        /// The adapter's name.
+        adapter: String,
+        /// The frame's size.
+        size: Size,
+        /// Bytes of all buffers.
+        needed: u64,
+    },
     /// No adapter fits. The message says what is there and what to install.
     #[error("no usable GPU adapter: {reason}")]
     NoAdapter {

@@ -102,7 +102,7 @@ macro_rules! params {
         pub struct $name { $($(#[$field_meta])* pub $field: $ty,)* }
 
         impl $name {
-            const LAYOUT: $crate::kernel::Layout = $crate::kernel::Layout {
+            pub(crate) const LAYOUT: $crate::kernel::Layout = $crate::kernel::Layout {
                 size: size_of::<$name>(),
                 fields: &[$($crate::kernel::Field {
                     name: stringify!($field),

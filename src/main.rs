@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! The command line. Everything that it does is in [`viewsphere::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    viewsphere::cli::main()
+}

@@ -24,17 +24,9 @@ struct Model {
     delta_b: vec2f, // Δb
 }
 
-// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
-fn model(first: Expansion, second: Expansion, inside: bool, flow: vec2f) -> Model {
-    let a_xx = select(first.quad.z, 0.5 * (first.quad.z + second.quad.z), inside);
-    let a_yy = select(first.quad.w, 0.5 * (first.quad.w + second.quad.w), inside);
-    let a_xy = select(0.5 * first.cross_term, 0.25 * (first.cross_term + second.cross_term), inside);
-    let b_x = 0.5 * (first.quad.x - select(0.0, second.quad.x, inside));
-    let b_y = 0.5 * (first.quad.y - select(0.0, second.quad.y, inside));
-    return Model(
-        vec3f(a_xx, a_xy, a_yy),
-        vec2f(b_x + a_xx * flow.x + a_xy * flow.y, b_y + a_xy * flow.x + a_yy * flow.y),
-    );
+// AᵀA of a symmetric A: xx, xy, yy.
+fn squared(a: vec3f) -> vec3f {
+    return vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y);
 }
 
 // How much the pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.

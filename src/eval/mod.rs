@@ -1,5 +1,7 @@
 //! How good a flow field is.
 
 mod metrics;
+mod scene;
 
 pub use metrics::{FlowError, angular_error_deg, endpoint_error, flow_error};
+pub use scene::Scene;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, ComputePass, ComputePipeline};
+use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, ComputePass, ComputePipeline, QuerySet};
 
 use super::{Gpu, reflect};
 use crate::error::{Error, Result};
@@ -124,6 +124,29 @@ impl GpuExecutor {
     /// Records what is to be computed of a frame and the one before.
     pub fn record_pair(&self, pass: &mut ComputePass<'_>, parity: usize) {
         self.pair[parity].iter().for_each(|dispatch| dispatch.record(pass));
+    }
+
+    /// Records a frame, with a query of the clock before the first step and after each one if queries are given.
+    pub(crate) fn record_frame(
+        &self,
+        pass: &mut ComputePass<'_>,
+        parity: usize,
+        pair: bool,
+        queries: Option<&QuerySet>,
+    ) {
+        let Some(queries) = queries else {
+            self.record_ingest(pass, parity);
+            if pair {
+                self.record_pair(pass, parity);
+            }
+            return;
+        };
+        let pair: &[Dispatch] = if pair { &self.pair[parity] } else { &[] };
+        pass.write_timestamp(queries, 0);
+        for (i, dispatch) in (1..).zip(self.ingest[parity].iter().chain(pair)) {
+            dispatch.record(pass);
+            pass.write_timestamp(queries, i);
+        }
     }
 
     /// Writes a buffer from the host, at once. For tests and comparisons: a stream uses mapped buffers.

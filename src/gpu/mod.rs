@@ -133,14 +133,14 @@ impl Gpu {
         self.poll(wgpu::PollType::wait_indefinitely()).map(|_| ())
     }
 
-    /// Polls the device. True if nothing submitted is left to do.
+    /// Polls the device. True if what was waited for is done, or if nothing submitted is left to do.
     pub(crate) fn poll(&self, kind: wgpu::PollType) -> Result<bool> {
         // wgpu panics where the driver reports a loss or is out of memory.
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         match polled {
             Ok(Ok(status)) => match self.lost() {
                 Some(_) => Err(self.lost_error("")),
-                None => Ok(status.is_queue_empty()),
+                None => Ok(status.wait_finished()),
             },
             Ok(Err(wgpu::PollError::Timeout)) => Ok(false),
             Ok(Err(error)) => Err(self.lost_error(error.to_string())),

@@ -5,6 +5,7 @@
 
 pub mod cases;
 pub mod compare;
+mod pair;
 pub(crate) mod rows;
 pub mod tables;
 
@@ -36,4 +37,6 @@ registry!(
     matrices,
     window_y,
     solve,
+    residual,
+    confidence,
 );

@@ -22,7 +22,7 @@ params! {
 }
 
 kernel!(
-    "solve" + ["image", "window"],
+    "solve" + ["image", "window", "average"],
     reference(Params; columns, window) -> (flow),
     cases: cases,
     tolerance: Tolerance {
@@ -35,28 +35,44 @@ kernel!(
 
 fn reference(p: &Params, columns: &[f32], window: &[f32], flow: &mut [f32]) {
     let (width, _, stride) = dimensions(p.width, p.height);
+    average(p, columns, window, flow, 2, #[inline(always)] |[g_xx, g_xy, g_yy, h_x, h_y], rows| {
+        let (u, v) = rows.split_at_mut(stride);
+        for x in 0..width {
+            let scale = 1.0 / (g_xx[x] * g_yy[x] - g_xy[x] * g_xy[x] + 1e-3);
+            u[x] = known((g_yy[x] * h_x[x] - g_xy[x] * h_y[x]) * scale);
+            v[x] = known((g_xx[x] * h_y[x] - g_xy[x] * h_x[x]) * scale);
+        }
+    });
+}
+
+/// Averages rows of five channels by the window and hands them to `f` with the row of the result that they belong to.
+#[inline(always)]
+pub(super) fn average(
+    p: &Params,
+    columns: &[f32],
+    window: &[f32],
+    result: &mut [f32],
+    channels: usize,
+    f: impl Fn([&[f32]; 5], &mut [f32]) + Sync,
+) {
+    let (width, _, stride) = dimensions(p.width, p.height);
     let radius = p.radius as usize;
     let padding = radius.next_multiple_of(4) - radius;
     let window = &window[padding..][..2 * radius + 1];
     let extended = width + 2 * radius;
-    let split = Split { scratch: extended + 5 * width, ..Split::rows_of(2 * stride) };
-    bands(flow, &mut [], split, #[inline(always)] |band| {
+    let split = Split { scratch: extended + 5 * width, ..Split::rows_of(channels * stride) };
+    bands(result, &mut [], split, #[inline(always)] |band| {
         let Band { y0, out, scratch, .. } = band;
         let (extended, sums) = scratch.split_at_mut(extended);
-        for (i, rows) in out.chunks_exact_mut(2 * stride).enumerate() {
+        for (i, rows) in out.chunks_exact_mut(channels * stride).enumerate() {
             for (channel, sum) in sums.chunks_exact_mut(width).enumerate() {
                 extend_row(extended, &columns[(5 * (y0 + i) + channel) * stride..], width, radius);
                 weighted_sum(sum, window, |k| &extended[k..][..width]);
             }
-            let [g_xx, g_xy, g_yy, h_x, h_y] = [0, 1, 2, 3, 4].map(|channel| &sums[channel * width..][..width]);
-            let (u, v) = rows.split_at_mut(stride);
-            for x in 0..width {
-                let scale = 1.0 / (g_xx[x] * g_yy[x] - g_xy[x] * g_xy[x] + 1e-3);
-                u[x] = known((g_yy[x] * h_x[x] - g_xy[x] * h_y[x]) * scale);
-                v[x] = known((g_xx[x] * h_y[x] - g_xy[x] * h_x[x]) * scale);
+            f([0, 1, 2, 3, 4].map(|channel| &sums[channel * width..][..width]), rows);
+            for row in rows.chunks_exact_mut(stride) {
+                repeat_last(row, width);
             }
-            repeat_last(u, width);
-            repeat_last(v, width);
         }
     });
 }
@@ -74,7 +90,7 @@ fn cases(size: Size) -> Vec<Case> {
     })
 }
 
-fn equations(size: Size, fill: Fill) -> Vec<f32> {
+pub(super) fn equations(size: Size, fill: Fill) -> Vec<f32> {
     let mut random = Random::new(23);
     let stride = size.stride();
     let mut values = vec![0.0; 5 * stride * size.height as usize];

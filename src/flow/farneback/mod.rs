@@ -126,7 +126,7 @@ impl Farneback {
             certainty: None,
             flow,
             initial_flow: self.initial_flow,
-            confidence: None,
+            confidence: motion.confidence(),
             bufs: bufs.finish(),
         };
         plan.validate()?;

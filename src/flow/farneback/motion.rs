@@ -3,7 +3,7 @@
 use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Window};
 use crate::flow::levels::Level;
-use crate::kernels::{area, matrices, solve, tables, upsample, window_y};
+use crate::kernels::{area, confidence, matrices, residual, solve, tables, upsample, window_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers of this part of the plan.
@@ -17,6 +17,7 @@ pub(super) struct Motion {
     equations: BufId,
     columns: BufId,
     start: Start,
+    trust: Option<Trust>,
 }
 
 /// One level's flow and how the coarser level's is read.
@@ -25,6 +26,12 @@ struct MotionLevel {
     /// The finest level's flow is the plan's.
     flow: Option<BufId>,
     place: Option<[BufId; 2]>,
+}
+
+/// The buffers of the confidence.
+struct Trust {
+    certainty: BufId,
+    confidence: BufId,
 }
 
 /// What the coarsest level begins with.
@@ -75,7 +82,16 @@ impl Motion {
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
             start,
+            trust: config.confidence.then(|| Trust {
+                certainty: bufs.constant("certainty", vec![1.0; Shape::planar(finest, 1).len()]),
+                confidence: bufs.computed("confidence", Shape::planar(finest, 1)),
+            }),
         }
+    }
+
+    /// Where the confidence goes.
+    pub(super) fn confidence(&self) -> Option<BufId> {
+        self.trust.as_ref().map(|trust| trust.confidence)
     }
 
     /// The steps for a frame of this parity and the one before.
@@ -109,6 +125,9 @@ impl Motion {
                 );
             }
             coarser = Some((own, level.level));
+            if let (0, Some(trust)) = (k, &self.trust) {
+                self.judge(&mut steps, trust, level.level, pair, own);
+            }
         }
         steps
     }
@@ -181,6 +200,40 @@ impl Motion {
             solve::Params { width, height, radius: self.radius },
             &[self.columns, self.window_x],
             &[(flow, Shape::planar(level.size, 2))],
+        ));
+    }
+
+    /// The confidence in the finest level's flow.
+    fn judge(
+        &self,
+        steps: &mut Vec<Step>,
+        trust: &Trust,
+        level: Level,
+        [first, second]: [Expansion; 2],
+        flow: BufId,
+    ) {
+        let (width, height) = (level.size.width, level.size.height);
+        let five = Shape::planar(level.size, 5);
+        steps.push(Step::new(
+            &residual::KERNEL,
+            "confidence",
+            residual::Params { width, height },
+            &[first.quad, first.cross_term, second.quad, second.cross_term, trust.certainty, flow],
+            &[(self.equations, five)],
+        ));
+        steps.push(Step::new(
+            &window_y::KERNEL,
+            "confidence",
+            window_y::Params { width, height, radius: self.radius },
+            &[self.equations, self.window_y],
+            &[(self.columns, five)],
+        ));
+        steps.push(Step::new(
+            &confidence::KERNEL,
+            "confidence",
+            confidence::Params { width, height, radius: self.radius },
+            &[self.columns, self.window_x],
+            &[(trust.confidence, Shape::planar(level.size, 1))],
         ));
     }
 }

@@ -1,0 +1,41 @@
+
+// The second frame's expansion read between pixels, from quad_1 and cross_term_1.
+
+struct Second {
+    expansion: Expansion,
+    inside: bool, // whether there are four pixels around the place; if not, the expansion is without meaning
+}
+
+fn second_at(place: vec2f) -> Second {
+    let stride = (params.width + 3u) / 4u * 4u;
+    let whole = floor(place);
+    // A place that is not a number is not inside either.
+    let inside = all(whole >= vec2f()) && all(whole < vec2f(f32(params.width), f32(params.height)) - 1.0);
+    let at = vec2u(select(vec2f(), whole, inside));
+    let i = at.y * stride + at.x;
+    // A picture one pixel wide or high has no neighbours to read, and nothing is inside it.
+    let right = select(0u, 1u, inside);
+    let below = select(0u, stride, inside);
+    let expansion = bilinear(
+        Expansion(quad_1[i], cross_term_1[i]),
+        Expansion(quad_1[i + right], cross_term_1[i + right]),
+        Expansion(quad_1[i + below], cross_term_1[i + below]),
+        Expansion(quad_1[i + below + right], cross_term_1[i + below + right]),
+        place - whole,
+    );
+    return Second(expansion, inside);
+}
+
+// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
+fn model(first: Expansion, second: Second, flow: vec2f) -> Model {
+    let other = second.expansion;
+    let a_xx = select(first.quad.z, 0.5 * (first.quad.z + other.quad.z), second.inside);
+    let a_yy = select(first.quad.w, 0.5 * (first.quad.w + other.quad.w), second.inside);
+    let a_xy = select(0.5 * first.cross_term, 0.25 * (first.cross_term + other.cross_term), second.inside);
+    let b_x = 0.5 * (first.quad.x - select(0.0, other.quad.x, second.inside));
+    let b_y = 0.5 * (first.quad.y - select(0.0, other.quad.y, second.inside));
+    return Model(
+        vec3f(a_xx, a_xy, a_yy),
+        vec2f(b_x + a_xx * flow.x + a_xy * flow.y, b_y + a_xy * flow.x + a_yy * flow.y),
+    );
+}

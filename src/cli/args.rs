@@ -1,0 +1,81 @@
+//! The flags that several subcommands share.
+
+use clap::{Args, ValueEnum};
+
+use crate::error::Result;
+use crate::flow::{Farneback, Window};
+
+/// Parameters of the flow.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Flow parameters")]
+pub(super) struct FlowArgs {
+    /// Parameters to begin with; the flags below replace single ones
+    #[arg(long, value_enum, default_value_t = Preset::Default)]
+    preset: Preset,
+    /// A level's size against the next finer one, above 0 and below 1
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    pyr_scale: Option<f64>,
+    /// Levels beside the full picture, 0 to 32
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    levels: Option<u32>,
+    /// Width of the averaging window in pixels, 2 to 1024
+    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    winsize: Option<u32>,
+    /// Iterations on each level, 1 to 1000
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    iterations: Option<u32>,
+    /// Radius of the polynomial expansion in pixels, 1 to 32
+    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    poly_n: Option<u32>,
+    /// Standard deviation of the expansion's Gaussian in pixels, 0 to 100; 0 is 0.3 × poly-n
+    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    poly_sigma: Option<f64>,
+    /// Shape of the averaging window
+    #[arg(long, value_enum)]
+    window: Option<WindowArg>,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum Preset {
+    /// Half the default's work: 1 iteration, winsize 13
+    Fast,
+    /// 3 iterations, winsize 15, 3 levels
+    Default,
+    /// Three times the default's work: 10 iterations, winsize 13, 5 levels
+    Accurate,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum WindowArg {
+    /// All neighbours count the same
+    Box,
+    /// Near neighbours count more
+    Gaussian,
+}
+
+impl FlowArgs {
+    /// The parameters, checked.
+    pub(super) fn farneback(&self) -> Result<Farneback> {
+        let preset = match self.preset {
+            Preset::Fast => Farneback::fast(),
+            Preset::Default => Farneback::default(),
+            Preset::Accurate => Farneback::accurate(),
+        };
+        let window = self.window.map(|window| match window {
+            WindowArg::Box => Window::Box,
+            WindowArg::Gaussian => Window::Gaussian,
+        });
+        let flow = Farneback {
+            pyr_scale: self.pyr_scale.unwrap_or(preset.pyr_scale),
+            levels: self.levels.unwrap_or(preset.levels),
+            winsize: self.winsize.unwrap_or(preset.winsize),
+            iterations: self.iterations.unwrap_or(preset.iterations),
+            poly_n: self.poly_n.unwrap_or(preset.poly_n),
+            poly_sigma: self.poly_sigma.unwrap_or(preset.poly_sigma),
+            window: window.unwrap_or(preset.window),
+            ..preset
+        };
+        flow.validate()?;
+        Ok(flow)
+    }
+}

@@ -1,0 +1,85 @@
+//! What to compute on, and saying so.
+
+use clap::{Args, ValueEnum};
+
+use super::print;
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::gpu::{Gpu, GpuOptions};
+
+/// What to compute on.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Backend")]
+pub(super) struct BackendArgs {
+    /// What to compute on. Without it: a real GPU if there is one, else the CPU; which one is said on stderr. `gpu`
+    /// takes any adapter, also one that computes on the CPU such as lavapipe
+    #[arg(long, value_enum)]
+    pub(super) backend: Option<BackendArg>,
+    /// Part of the name of the GPU adapter to use (see `viewsphere devices`)
+    #[arg(long, value_name = "NAME")]
+    pub(super) adapter: Option<String>,
+}
+
+/// The two executors.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BackendArg {
+    /// wgpu
+    Gpu,
+    /// All cores
+    Cpu,
+}
+
+impl BackendArgs {
+    /// What to compute on. Says on stderr which it is.
+    pub(super) fn open(&self) -> Result<Backend> {
+        let backend = match (self.backend, &self.adapter) {
+            (None, None) => match Gpu::new(&GpuOptions::default()) {
+                Ok(gpu) => Backend::Gpu(gpu),
+                Err(Error::NoAdapter { reason }) => {
+                    print::note(format_args!("computing on the CPU; no usable GPU adapter: {reason}"));
+                    return Ok(Backend::Cpu);
+                }
+                Err(error) => return Err(error),
+            },
+            _ => self.named()?,
+        };
+        match &backend {
+            Backend::Gpu(gpu) => print::note(format_args!("computing on {}", gpu.adapter())),
+            Backend::Cpu => print::note("computing on the CPU"),
+        }
+        Ok(backend)
+    }
+
+    /// All that can be computed on: the CPU, and before it a GPU where there is one, unless one of them is named.
+    pub(super) fn open_all(&self) -> Result<Vec<Backend>> {
+        if self.backend.is_some() {
+            return Ok(vec![self.named()?]);
+        }
+        if self.adapter.is_some() {
+            return Ok(vec![self.named()?, Backend::Cpu]);
+        }
+        match Gpu::new(&GpuOptions::default()) {
+            Ok(gpu) => Ok(vec![Backend::Gpu(gpu), Backend::Cpu]),
+            Err(Error::NoAdapter { reason }) => {
+                print::note(format_args!("only the CPU; no usable GPU adapter: {reason}"));
+                Ok(vec![Backend::Cpu])
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn named(&self) -> Result<Backend> {
+        match (self.backend, &self.adapter) {
+            (Some(BackendArg::Cpu), None) => Ok(Backend::Cpu),
+            (Some(BackendArg::Cpu), Some(adapter)) => {
+                Err(Error::parameter("--adapter", adapter, "none beside --backend cpu"))
+            }
+            _ => Ok(Backend::Gpu(self.gpu()?)),
+        }
+    }
+
+    /// The adapter that is named, or any: for those who asked for a GPU.
+    pub(super) fn gpu(&self) -> Result<Gpu> {
+        Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })
+    }
+}

@@ -1,0 +1,233 @@
+//! The measurements.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::copy;
+use crate::engine::{Backend, Config, Engine, TimeSource};
+use crate::error::Result;
+use crate::eval::Scene;
+use crate::flow::Farneback;
+use crate::frame::{Image, Size};
+use crate::plan::{BufId, Plan};
+
+/// Frames of the made-up scene, played forth and back.
+const FRAMES: u32 = 6;
+/// Frames before the clock counts.
+const WARM_UP: u32 = 4;
+
+/// Everything measured for one backend and size.
+#[derive(Debug, Serialize)]
+pub(super) struct Figures {
+    pub(super) backend: String,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) frames: u32,
+    pub(super) startup: Startup,
+    pub(super) frame_ms: Times,
+    /// Of the engine's buffers.
+    pub(super) buffer_bytes: u64,
+    /// Bytes read and written by a plain copy, a second.
+    pub(super) copy_gb_s: f64,
+    /// Which clock the kernels' times are from: `gpu`, `host`, or `none` where the device has none.
+    pub(super) clock: &'static str,
+    pub(super) kernels: Vec<KernelFigures>,
+}
+
+/// What is done once.
+#[derive(Debug, Serialize)]
+pub(super) struct Startup {
+    /// Buffers, pipelines and bind groups.
+    pub(super) engine_ms: f64,
+    /// The first frame and the first pair, with what the driver puts off until then.
+    pub(super) first_frame_ms: f64,
+    pub(super) first_pair_ms: f64,
+}
+
+/// Times of something that was done many times.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Times {
+    pub(super) median: f64,
+    pub(super) p99: f64,
+    pub(super) min: f64,
+}
+
+/// All steps of one kernel in a frame, together.
+#[derive(Debug, Serialize)]
+pub(super) struct KernelFigures {
+    pub(super) kernel: &'static str,
+    pub(super) steps: usize,
+    pub(super) ms: Times,
+    pub(super) bytes: u64,
+    pub(super) gb_s: f64,
+    pub(super) share_of_copy: f64,
+}
+
+/// Measures one backend at one size.
+pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u32) -> Result<Figures> {
+    let scene = Scene::new(size)?;
+    let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
+    let config = Config { flow: flow.clone(), ..Config::default() };
+
+    let (engine, engine_ms) = timed(|| Engine::new(backend.clone(), size, &config));
+    let mut engine = engine?;
+    let mut run = |number: u32| {
+        let frame = played(&images, number).frame()?;
+        let (done, ms) = timed(|| engine.process(&frame).map(|_| ()));
+        done.map(|()| ms)
+    };
+    let first_frame_ms = run(0)?;
+    let first_pair_ms = run(1)?;
+    let times = (2..2 + WARM_UP + frames).map(&mut run).collect::<Result<Vec<f64>>>()?;
+    let frame_ms = Times::new(times[WARM_UP as usize..].to_vec());
+    let (name, buffer_bytes) = (engine.adapter(), engine.buffer_bytes());
+    drop(engine);
+
+    let copy_gb_s = match backend {
+        Backend::Gpu(gpu) => copy::gpu(gpu, largest(&config.flow.plan(size, config.format)?))?,
+        Backend::Cpu => copy::cpu(largest(&config.flow.plan(size, config.format)?)),
+    };
+    let timed_config = Config { timestamps: true, ..config };
+    let mut engine = Engine::new(backend.clone(), size, &timed_config)?;
+    let (clock, kernels) = kernels(&mut engine, &images, frames, copy_gb_s)?;
+    Ok(Figures {
+        backend: name,
+        width: size.width,
+        height: size.height,
+        frames,
+        startup: Startup { engine_ms, first_frame_ms, first_pair_ms },
+        frame_ms,
+        buffer_bytes,
+        copy_gb_s,
+        clock,
+        kernels,
+    })
+}
+
+fn kernels(
+    engine: &mut Engine,
+    images: &[Image],
+    frames: u32,
+    copy_gb_s: f64,
+) -> Result<(&'static str, Vec<KernelFigures>)> {
+    // Kernels in the order of their first step, and of each the sums over a frame, frame by frame.
+    let mut sums: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    for number in 0..1 + WARM_UP + frames {
+        engine.process(&played(images, number).frame()?)?;
+        let mut frame: Vec<(&'static str, f64)> = Vec::new();
+        for stage in engine.stage_times() {
+            let ms = stage.time.as_secs_f64() * 1e3;
+            match frame.iter_mut().find(|(kernel, _)| *kernel == stage.kernel) {
+                Some((_, sum)) => *sum += ms,
+                None => frame.push((stage.kernel, ms)),
+            }
+        }
+        for (kernel, ms) in frame.into_iter().filter(|_| number > WARM_UP) {
+            match sums.iter_mut().find(|(other, _)| *other == kernel) {
+                Some((_, times)) => times.push(ms),
+                None => sums.push((kernel, vec![ms])),
+            }
+        }
+    }
+    let clock = match engine.time_source() {
+        TimeSource::None => "none",
+        TimeSource::Gpu => "gpu",
+        TimeSource::Host => "host",
+    };
+    let moved = moved(engine.plan());
+    let figures = sums.into_iter().map(|(kernel, times)| {
+        let (steps, bytes) = moved.get(kernel).copied().unwrap_or_default();
+        let ms = Times::new(times);
+        let gb_s = bytes as f64 / ms.median / 1e6;
+        KernelFigures { kernel, steps, ms, bytes, gb_s, share_of_copy: gb_s / copy_gb_s }
+    });
+    Ok((clock, figures.collect()))
+}
+
+/// Of each kernel, its steps in a frame and the bytes of what they read and write.
+///
+/// Levels share buffers, so what is read is as large as what was last written there, not as large as the buffer.
+fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
+    let mut written: HashMap<BufId, usize> = HashMap::new();
+    let mut moved = HashMap::new();
+    for (parity, step) in [0, 1].into_iter().flat_map(|p| plan.steps(p).map(move |step| (p, step))) {
+        let mut values = 0;
+        for input in &step.inputs {
+            values += written.get(input).copied().unwrap_or_else(|| plan.buf(*input).len);
+        }
+        for (output, shape) in &step.outputs {
+            values += shape.len();
+            written.insert(*output, shape.len());
+        }
+        if parity == 1 {
+            let (steps, bytes) = moved.entry(step.kernel.name).or_insert((0, 0));
+            *steps += 1;
+            *bytes += 4 * values as u64;
+        }
+    }
+    moved
+}
+
+/// Values of the plan's largest buffer.
+fn largest(plan: &Plan) -> usize {
+    plan.bufs.iter().map(|buf| buf.len).max().unwrap_or(1)
+}
+
+fn played(images: &[Image], number: u32) -> &Image {
+    let turn = images.len() - 1;
+    let at = number as usize % (2 * turn);
+    &images[if at > turn { 2 * turn - at } else { at }]
+}
+
+pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed().as_secs_f64() * 1e3)
+}
+
+impl Times {
+    fn new(mut ms: Vec<f64>) -> Self {
+        ms.sort_by(f64::total_cmp);
+        // The nearest rank.
+        let rank = |percent: usize| ms[(ms.len() * percent).div_ceil(100).max(1) - 1];
+        Self { median: rank(50), p99: rank(99), min: rank(0) }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::frame::PixelFormat;
+
+    #[test]
+    fn frames_are_played_forth_and_back() {
+        let image = |gray| Image { data: vec![gray], ..Image::default() };
+        let images = [image(0), image(1), image(2)];
+        let order: Vec<u8> = (0..6).map(|number| played(&images, number).data[0]).collect();
+        assert_eq!(order, [0, 1, 2, 1, 0, 1]);
+    }
+
+    #[test]
+    fn moved_bytes_are_those_of_each_level_not_of_the_shared_buffer() {
+        let size = Size::new(64, 64);
+        let plan = Farneback { levels: 1, ..Farneback::default() }.plan(size, PixelFormat::Gray8).unwrap();
+        let moved = moved(&plan);
+        // A frame of bytes in, a plane of f32 out.
+        assert_eq!(moved["luma"], (1, 64 * 64 * 5));
+        // Two levels, each with a plane in, three out, and its weights.
+        let step = plan.ingest[0].iter().find(|step| step.kernel.name == "expansion_y").unwrap();
+        let weights = plan.buf(step.inputs[1]).len as u64;
+        assert!(weights < 100, "{weights}");
+        let planes = 4 * 4 * (64 * 64 + 32 * 32);
+        assert_eq!(moved["expansion_y"], (2, planes + 2 * 4 * weights));
+    }
+
+    #[test]
+    fn percentiles_are_of_the_nearest_rank() {
+        let times = Times::new((1..=200).rev().map(f64::from).collect());
+        assert_eq!((times.min, times.median, times.p99), (1.0, 100.0, 198.0));
+    }
+}

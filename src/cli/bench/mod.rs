@@ -1,0 +1,74 @@
+//! `viewsphere bench`: how long a frame and each kernel takes, against the speed of a plain copy.
+
+mod copy;
+mod measure;
+mod serve;
+mod show;
+
+use clap::Args;
+
+use self::measure::Figures;
+use super::args::FlowArgs;
+use super::backend::BackendArgs;
+use super::{Outcome, print};
+use crate::error::{Error, Result};
+use crate::frame::Size;
+
+/// Time a frame and each kernel, on the GPU and on the CPU.
+///
+/// Frames of a made-up scene are streamed, each with its upload and the field read back. The kernels are timed in a
+/// second run, by the GPU's own clock or, on the CPU, around each step. "moved" is what a step must at least read and
+/// write; its share of the speed of a plain copy, measured in the same run, says how much a kernel could still gain. Work
+/// that stays in a cache can exceed 100 %.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere bench
+  viewsphere bench --size 640x480 1280x720 --preset fast --frames 200
+  viewsphere bench --backend gpu --adapter llvmpipe --json
+  viewsphere bench --serve                           answer requests, one JSON object a line; see benches/opencv.py")]
+pub(super) struct Bench {
+    /// Sizes of the frames
+    #[arg(long, value_name = "WxH", num_args = 1.., default_value = "640x480")]
+    size: Vec<Size>,
+    /// Frames to time in each run, 2 to 100000
+    #[arg(long, value_name = "N", default_value_t = 50, allow_negative_numbers = true)]
+    frames: u32,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    /// Answer requests on standard input, one JSON object a line, until it ends
+    #[arg(long)]
+    serve: bool,
+    #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+impl Bench {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        if self.serve {
+            return serve::serve(&self.backend).map(|()| Outcome::Done);
+        }
+        let config = self.flow.farneback()?;
+        if !(2..=100_000).contains(&self.frames) {
+            return Err(Error::parameter("--frames", self.frames, "2 to 100000"));
+        }
+        let mut results: Vec<Figures> = Vec::new();
+        for backend in self.backend.open_all()? {
+            for &size in &self.size {
+                let figures = measure::measure(&backend, size, &config, self.frames)?;
+                if !self.json {
+                    print::text(&show::text(&figures))?;
+                    print::text("")?;
+                }
+                results.push(figures);
+            }
+        }
+        if self.json {
+            print::json(&results)?;
+        }
+        Ok(Outcome::Done)
+    }
+}

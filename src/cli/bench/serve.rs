@@ -1,0 +1,172 @@
+//! Requests and answers, one JSON object a line, for programs that compare ours with others.
+//!
+//! The process lives on between requests, and with it the devices and engines that they need.
+
+use std::io::BufRead;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::measure::timed;
+use crate::cli::backend::{BackendArg, BackendArgs};
+use crate::cli::{input, print};
+use crate::engine::{Backend, Config, Engine};
+use crate::error::{Error, Result};
+use crate::flow::{Farneback, Window};
+use crate::frame::{Frame, PixelFormat, Size, flo};
+use crate::gpu::Gpu;
+
+/// Engines that are kept: more would fill the device's memory.
+const MAX_ENGINES: usize = 4;
+
+/// A pair of pictures to compute the flow of, `repeat` times.
+#[derive(Deserialize)]
+struct Request {
+    a: PathBuf,
+    b: PathBuf,
+    backend: String,
+    params: Params,
+    repeat: u32,
+    /// Whether the first picture counts as computed already, as in a stream.
+    stream: bool,
+    /// Where the field is to be written.
+    flow: Option<PathBuf>,
+}
+
+#[derive(Deserialize)]
+struct Params {
+    pyr_scale: f64,
+    levels: u32,
+    winsize: u32,
+    iterations: u32,
+    poly_n: u32,
+    poly_sigma: f64,
+    window: String,
+}
+
+#[derive(Serialize, Default)]
+struct Answer {
+    wall_ms: Vec<f64>,
+    adapter: Option<String>,
+    error: Option<String>,
+}
+
+struct Server<'a> {
+    args: &'a BackendArgs,
+    gpu: Option<Gpu>,
+    engines: Vec<(Key, Engine)>,
+}
+
+type Key = (BackendArg, Size, PixelFormat, Farneback);
+
+/// Answers until standard input ends. What a request gets wrong is in its answer.
+pub(super) fn serve(args: &BackendArgs) -> Result<()> {
+    let mut server = Server { args, gpu: None, engines: Vec::new() };
+    for line in std::io::stdin().lock().lines() {
+        let line = line.map_err(|source| Error::io("standard input", source))?;
+        if line.trim().is_empty() {
+            continue;
+        }
+        let answer = match server.answer(&line) {
+            Ok(answer) => answer,
+            Err(error) => Answer { error: Some(error.to_string()), ..Answer::default() },
+        };
+        print::json_line(&answer)?;
+    }
+    Ok(())
+}
+
+impl Server<'_> {
+    fn answer(&mut self, line: &str) -> Result<Answer> {
+        let request: Request = serde_json::from_str(line)
+            .map_err(|error| Error::parameter("request", error, "an object as in benches/opencv.py"))?;
+        let [a, b] = input::pair(&request.a, &request.b)?;
+        let frames = [a.frame()?, b.frame()?];
+        let backend = match request.backend.as_str() {
+            "gpu" => BackendArg::Gpu,
+            "cpu" => BackendArg::Cpu,
+            other => return Err(Error::parameter("backend", other, "gpu or cpu")),
+        };
+        let engine = self.engine((backend, a.size, a.format, request.params.farneback()?))?;
+        let mut answer = Answer { adapter: Some(engine.adapter()), ..Answer::default() };
+        for _ in 0..request.repeat {
+            answer.wall_ms.push(run(engine, &frames, request.stream)?);
+        }
+        if let Some(path) = &request.flow {
+            engine.reset();
+            engine.process(&frames[0])?;
+            if let Some(flow) = engine.process(&frames[1])?.and_then(|output| output.flow) {
+                flo::write(path, flow)?;
+            }
+        }
+        Ok(answer)
+    }
+
+    fn engine(&mut self, key: Key) -> Result<&mut Engine> {
+        if let Some(i) = self.engines.iter().position(|(other, _)| *other == key) {
+            // Used last, dropped last.
+            let engine = self.engines.remove(i);
+            self.engines.push(engine);
+        } else {
+            let backend = match key.0 {
+                BackendArg::Cpu => Backend::Cpu,
+                BackendArg::Gpu => {
+                    let gpu = match self.gpu.take() {
+                        Some(gpu) => gpu,
+                        None => self.args.gpu()?,
+                    };
+                    self.gpu = Some(gpu.clone());
+                    Backend::Gpu(gpu)
+                }
+            };
+            let config = Config { flow: key.3.clone(), format: key.2, ..Config::default() };
+            if self.engines.len() == MAX_ENGINES {
+                self.engines.remove(0);
+            }
+            let engine = Engine::new(backend, key.1, &config)?;
+            self.engines.push((key, engine));
+        }
+        let missing = || Error::parameter("engine", "missing", "one that was just made");
+        self.engines.last_mut().map(|(_, engine)| engine).ok_or_else(missing)
+    }
+}
+
+/// Milliseconds from the pixels to the field on the host; of both frames, or of the second one alone.
+fn run(engine: &mut Engine, [a, b]: &[Frame<'_>; 2], stream: bool) -> Result<f64> {
+    engine.reset();
+    if stream {
+        engine.process(a)?;
+        let (done, ms) = timed(|| engine.process(b).map(|_| ()));
+        return done.map(|()| ms);
+    }
+    // Both on their way before the first is waited for, as nobody needs an answer to it.
+    let (done, ms) = timed(|| {
+        let first = engine.submit(a)?;
+        let second = engine.submit(b)?;
+        engine.wait(first)?;
+        engine.wait(second).map(|_| ())
+    });
+    done.map(|()| ms)
+}
+
+impl Params {
+    fn farneback(&self) -> Result<Farneback> {
+        let window = match self.window.as_str() {
+            "box" => Window::Box,
+            "gaussian" => Window::Gaussian,
+            other => return Err(Error::parameter("window", other, "box or gaussian")),
+        };
+        let flow = Farneback {
+            pyr_scale: self.pyr_scale,
+            levels: self.levels,
+            winsize: self.winsize,
+            iterations: self.iterations,
+            poly_n: self.poly_n,
+            poly_sigma: self.poly_sigma,
+            window,
+            ..Farneback::default()
+        };
+        flow.validate()?;
+        Ok(flow)
+    }
+}

@@ -1,0 +1,51 @@
+//! The measurements as text.
+
+use super::measure::Figures;
+use crate::cli::print::table;
+
+/// What was measured for one backend and size.
+pub(super) fn text(figures: &Figures) -> String {
+    let Figures { startup, frame_ms, .. } = figures;
+    let mut text = format!(
+        "{}×{} on {}, {} frames\n\
+         frame      median {:.2} ms, p99 {:.2} ms, best {:.2} ms; {:.0} a second\n\
+         start-up   engine {:.1} ms, first frame {:.1} ms, first pair {:.1} ms\n\
+         memory     {:.1} MiB of buffers\n\
+         copy       {:.2} GB/s read and written\n\n",
+        figures.width,
+        figures.height,
+        figures.backend,
+        figures.frames,
+        frame_ms.median,
+        frame_ms.p99,
+        frame_ms.min,
+        1e3 / frame_ms.median,
+        startup.engine_ms,
+        startup.first_frame_ms,
+        startup.first_pair_ms,
+        figures.buffer_bytes as f64 / f64::from(1 << 20),
+        figures.copy_gb_s,
+    );
+    if figures.kernels.is_empty() {
+        return text + "kernels    no times: the device has no clock for them\n";
+    }
+    let head = ["kernel", "steps", "median ms", "p99 ms", "moved MB", "GB/s", "of copy"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for kernel in &figures.kernels {
+        rows.push(vec![
+            kernel.kernel.to_owned(),
+            kernel.steps.to_string(),
+            format!("{:.3}", kernel.ms.median),
+            format!("{:.3}", kernel.ms.p99),
+            format!("{:.2}", kernel.bytes as f64 / 1e6),
+            format!("{:.2}", kernel.gb_s),
+            format!("{:.0} %", 100.0 * kernel.share_of_copy),
+        ]);
+    }
+    text += &table(&rows);
+    let sum: f64 = figures.kernels.iter().map(|kernel| kernel.ms.median).sum();
+    text + &format!(
+        "all kernels {sum:.2} ms by the {} clock\n",
+        if figures.clock == "gpu" { "GPU's" } else { "host's" }
+    )
+}

@@ -1,0 +1,241 @@
+//! The comparison itself.
+
+use serde::Serialize;
+
+use crate::cli::buffers::{put_frame, put_plane, take_flow};
+use crate::cpu::CpuExecutor;
+use crate::error::Result;
+use crate::eval::endpoint_error;
+use crate::frame::{Image, Plane};
+use crate::gpu::{Gpu, GpuExecutor};
+use crate::kernel::Tolerance;
+use crate::kernels::compare::{Difference, POISON, compare};
+use crate::plan::{BufId, Content, Plan, Shape, Step};
+
+/// What was found.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) adapter: String,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// Values beyond their bound, over all steps.
+    pub(super) breaches: usize,
+    pub(super) steps: Vec<StepFigures>,
+    /// The two flow fields computed each on its own, in pixels.
+    pub(super) flow: Spread,
+    /// In that run, the first step with any difference, and the first with one beyond its kernel's bound.
+    pub(super) first_difference: Option<String>,
+    pub(super) first_beyond_bound: Option<String>,
+}
+
+/// One output of one step.
+#[derive(Debug, Serialize)]
+pub(super) struct StepFigures {
+    pub(super) kernel: &'static str,
+    pub(super) step: String,
+    pub(super) output: &'static str,
+    #[serde(flatten)]
+    pub(super) spread: Spread,
+    pub(super) bound_absolute: f32,
+    pub(super) bound_relative: f32,
+    pub(super) reason: &'static str,
+    pub(super) values: usize,
+    pub(super) breaches: usize,
+    pub(super) worst: Option<Worst>,
+}
+
+/// How far apart two sets of values lie.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Spread {
+    pub(super) max: f32,
+    pub(super) p999: f32,
+    pub(super) mean: f64,
+}
+
+/// The value that is furthest beyond its bound.
+#[derive(Debug, Serialize)]
+pub(super) struct Worst {
+    pub(super) column: usize,
+    pub(super) row: usize,
+    pub(super) channel: usize,
+    pub(super) cpu: f32,
+    pub(super) gpu: f32,
+    pub(super) bound: f32,
+}
+
+/// The two executors, and the GPU once more: corrected before every step, and left to itself.
+struct Sides<'a> {
+    plan: &'a Plan,
+    cpu: CpuExecutor,
+    corrected: GpuExecutor,
+    alone: GpuExecutor,
+    /// What bounds are multiplied by.
+    factor: f32,
+}
+
+/// Runs the plan on a pair of frames, on all sides, with every bound multiplied by `factor`.
+pub(super) fn run(
+    gpu: &Gpu,
+    plan: &Plan,
+    pair: &[Image; 2],
+    certainty: Option<&Plane>,
+    factor: f32,
+) -> Result<Report> {
+    let mut sides = Sides {
+        plan,
+        cpu: CpuExecutor::new(plan),
+        corrected: GpuExecutor::new(gpu, plan)?,
+        alone: GpuExecutor::new(gpu, plan)?,
+        factor,
+    };
+    let mut report = Report {
+        adapter: gpu.adapter().to_string(),
+        width: plan.size.width,
+        height: plan.size.height,
+        breaches: 0,
+        steps: Vec::new(),
+        flow: Spread::default(),
+        first_difference: None,
+        first_beyond_bound: None,
+    };
+    if let (Some(id), Some(plane)) = (plan.certainty, certainty) {
+        put_plane(plane, sides.cpu.buf_mut(id));
+        sides.alone.write(id, sides.cpu.buf(id));
+    }
+    for (parity, image) in pair.iter().enumerate() {
+        put_frame(&image.frame()?, sides.cpu.buf_mut(plan.frame));
+        sides.alone.write(plan.frame, sides.cpu.buf(plan.frame));
+        // The first frame has no other before it.
+        let count = if parity == 0 { plan.ingest[0].len() } else { usize::MAX };
+        for (index, step) in plan.steps(parity).enumerate().take(count) {
+            sides.step(step, parity, index, &mut report)?;
+        }
+    }
+    report.breaches = report.steps.iter().map(|step| step.breaches).sum();
+    let id = plan.flow[1];
+    let expected = take_flow(sides.cpu.buf(id), plan.size);
+    let found = take_flow(&sides.alone.read(id, plan.buf(id).len)?, plan.size);
+    let error = endpoint_error(&expected, &found)?;
+    report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, ANY));
+    Ok(report)
+}
+
+/// For figures alone.
+const ANY: Tolerance = Tolerance { absolute: f32::INFINITY, relative: 0.0, reason: "only the figures count" };
+
+impl Sides<'_> {
+    fn step(&mut self, step: &Step, parity: usize, index: usize, report: &mut Report) -> Result<()> {
+        for &input in &step.inputs {
+            if !matches!(self.plan.buf(input).content, Content::Constant(_)) {
+                self.corrected.write(input, self.cpu.buf(input));
+            }
+        }
+        // A value that is not written must not pass because it was right before.
+        for &(output, shape) in &step.outputs {
+            self.cpu.buf_mut(output)[..shape.len()].fill(POISON);
+            self.corrected.write(output, &self.cpu.buf(output)[..shape.len()]);
+        }
+        self.cpu.run(step);
+        self.corrected.run(parity, index)?;
+        self.alone.run(parity, index)?;
+        let name = format!("frame {parity}, {}", step.label);
+        for (&(id, shape), &output) in step.outputs.iter().zip(step.kernel.outputs) {
+            let tolerance = self.tolerance(step);
+            let difference = self.difference(&self.corrected, id, shape, tolerance)?;
+            report.steps.push(StepFigures::new(step, name.clone(), output, shape, tolerance, &difference));
+            let alone = self.difference(&self.alone, id, shape, tolerance)?;
+            let named = || Some(format!("{} ({name}): {output} by up to {:e}", step.kernel.name, alone.max));
+            if alone.max != 0.0 && report.first_difference.is_none() {
+                report.first_difference = named();
+            }
+            if alone.breaches > 0 && report.first_beyond_bound.is_none() {
+                report.first_beyond_bound = named();
+            }
+        }
+        Ok(())
+    }
+
+    fn tolerance(&self, step: &Step) -> Tolerance {
+        let Tolerance { absolute, relative, reason } = step.kernel.tolerance;
+        Tolerance { absolute: self.factor * absolute, relative: self.factor * relative, reason }
+    }
+
+    fn difference(
+        &self,
+        gpu: &GpuExecutor,
+        id: BufId,
+        shape: Shape,
+        within: Tolerance,
+    ) -> Result<Difference> {
+        let found = gpu.read(id, shape.len())?;
+        Ok(compare(&self.cpu.buf(id)[..shape.len()], &found, within))
+    }
+}
+
+impl StepFigures {
+    fn new(
+        step: &Step,
+        name: String,
+        output: &'static str,
+        shape: Shape,
+        within: Tolerance,
+        found: &Difference,
+    ) -> Self {
+        let Tolerance { absolute, relative, reason } = within;
+        let worst = found.worst.map(|breach| {
+            let [column, row, channel] = shape.place(breach.index);
+            Worst { column, row, channel, cpu: breach.expected, gpu: breach.found, bound: breach.bound }
+        });
+        Self {
+            kernel: step.kernel.name,
+            step: name,
+            output,
+            spread: Spread::from(found),
+            bound_absolute: absolute,
+            bound_relative: relative,
+            reason,
+            values: found.count,
+            breaches: found.breaches,
+            worst,
+        }
+    }
+}
+
+impl From<&Difference> for Spread {
+    fn from(d: &Difference) -> Self {
+        Self { max: d.max, p999: d.p999, mean: d.mean }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::frame::{PixelFormat, Size};
+    use crate::plan::Shape;
+
+    /// The check itself is checked: a value that differs, and one that was never written, are found and placed.
+    #[test]
+    fn a_breach_is_counted_and_placed() {
+        let size = Size::new(5, 3);
+        let plan = crate::flow::Farneback::default().plan(size, PixelFormat::Gray8).unwrap();
+        let step = &plan.ingest[0][0];
+        let shape = Shape::planar(size, 1);
+        let expected = vec![1.0; shape.len()];
+        let mut found = expected.clone();
+        found[8 * 2 + 3] = 2.0;
+        found[8] = POISON;
+        let figures = StepFigures::new(
+            step,
+            "frame".to_owned(),
+            "gray",
+            shape,
+            step.kernel.tolerance,
+            &compare(&expected, &found, step.kernel.tolerance),
+        );
+        assert_eq!((figures.breaches, figures.kernel), (2, "luma"));
+        let worst = figures.worst.unwrap();
+        assert_eq!((worst.column, worst.row, worst.channel, worst.cpu), (0, 1, 0, 1.0));
+        assert!(figures.spread.max.is_infinite() && worst.gpu.is_nan());
+    }
+}

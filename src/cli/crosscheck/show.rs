@@ -1,0 +1,87 @@
+//! The comparison as text.
+
+use super::run::{Report, Spread, StepFigures};
+use crate::cli::print::table;
+
+/// What was found, as tables: the worst of each kernel, and every step if wanted.
+pub(super) fn text(report: &Report, steps: bool) -> String {
+    let mut text = format!("{}×{} on {} against the CPU\n\n", report.width, report.height, report.adapter);
+    if steps {
+        let mut rows = vec![head("step")];
+        let name = |step: &StepFigures| format!("{} ({}): {}", step.kernel, step.step, step.output);
+        rows.extend(report.steps.iter().map(|s| row(name(s), s, s.spread, s.breaches)));
+        text += &format!("{}\n", table(&rows));
+    }
+    let mut rows = vec![head("kernel, worst of its steps")];
+    let mut seen: Vec<&str> = Vec::new();
+    for step in &report.steps {
+        if !seen.contains(&step.kernel) {
+            seen.push(step.kernel);
+            rows.push(worst_of(step, &report.steps));
+        }
+    }
+    text += &table(&rows);
+    for step in &report.steps {
+        if let Some(w) = &step.worst {
+            text += &format!(
+                "beyond the bound: {} ({}), {} at column {}, row {}, channel {}: CPU {:e}, GPU {:e}, bound {:e} ({})\n",
+                step.kernel,
+                step.step,
+                step.output,
+                w.column,
+                w.row,
+                w.channel,
+                w.cpu,
+                w.gpu,
+                w.bound,
+                step.reason,
+            );
+        }
+    }
+    let none = || "none".to_owned();
+    text += &format!(
+        "\nflow, each side on its own: max {:.2e} px, 99.9 % within {:.2e} px, mean {:.2e} px\n\
+         first step that differs at all: {}\nfirst step beyond its bound, errors adding up: {}\n{}\n",
+        report.flow.max,
+        report.flow.p999,
+        report.flow.mean,
+        report.first_difference.clone().unwrap_or_else(none),
+        report.first_beyond_bound.clone().unwrap_or_else(none),
+        match report.breaches {
+            0 => "every value of every step is within its bound".to_owned(),
+            count => format!("FAILED: {count} values are beyond their bounds"),
+        },
+    );
+    text
+}
+
+fn head(first: &str) -> Vec<String> {
+    [first, "max", "p99.9", "mean", "bound", "breaches"].map(str::to_owned).to_vec()
+}
+
+fn worst_of(first: &StepFigures, all: &[StepFigures]) -> Vec<String> {
+    let same = || all.iter().filter(|step| step.kernel == first.kernel);
+    let spread = Spread {
+        max: same().map(|s| s.spread.max).fold(0.0, f32::max),
+        p999: same().map(|s| s.spread.p999).fold(0.0, f32::max),
+        mean: same().map(|s| s.spread.mean).fold(0.0, f64::max),
+    };
+    row(first.kernel.to_owned(), first, spread, same().map(|s| s.breaches).sum())
+}
+
+fn row(name: String, step: &StepFigures, spread: Spread, breaches: usize) -> Vec<String> {
+    let bound = match (step.bound_absolute, step.bound_relative) {
+        (0.0, 0.0) => "0".to_owned(),
+        (absolute, 0.0) => format!("{absolute:.1e}"),
+        (0.0, relative) => format!("{relative:.1e}·|x|"),
+        (absolute, relative) => format!("{absolute:.1e} + {relative:.1e}·|x|"),
+    };
+    vec![
+        name,
+        format!("{:.2e}", spread.max),
+        format!("{:.2e}", spread.p999),
+        format!("{:.2e}", spread.mean),
+        bound,
+        breaches.to_string(),
+    ]
+}

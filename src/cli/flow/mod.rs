@@ -1,0 +1,207 @@
+//! `viewsphere flow`: the flow between two pictures, or along a sequence or a video.
+
+mod report;
+mod source;
+mod targets;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::report::Report;
+use self::source::Source;
+pub(super) use self::targets::gray;
+use self::targets::{FormatArg, Pair, Targets};
+use super::args::FlowArgs;
+use super::backend::BackendArgs;
+use super::{Outcome, input};
+use crate::engine::{Config, Engine, Extras};
+use crate::error::{Error, Result};
+use crate::frame::{FlowField, Image, Plane, Size, read_flow};
+
+/// Compute the flow between two pictures, or along a sequence or a video.
+///
+/// Inputs are two pictures (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard
+/// input. For two pictures -o, --color, --arrows and --confidence name files; for everything else folders, in which file
+/// 000000 belongs to the first frame and its flow to the second. Without any of them a summary is printed.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere flow a.png b.png                        only a summary
+  viewsphere flow a.png b.png -o flow.flo --color flow.png
+  viewsphere flow a.png b.png -o - > flow.flo
+  viewsphere flow 'frames/%04d.png' -o flows/ --color colours/ --warm-start
+  viewsphere flow video.y4m -o flows/ --format kitti --backend gpu
+  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  ffmpeg -i in.mp4 -f rawvideo -pix_fmt gray - | viewsphere flow - --raw 640x480 -o flows/")]
+pub(super) struct Flow {
+    /// Two pictures; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    #[arg(required = true)]
+    inputs: Vec<String>,
+    /// Write the flow to this file (.flo, .png for KITTI, .npy) or into this folder; - is standard output
+    #[arg(short, long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Format of the flow; without it by the file's extension, and .flo in a folder
+    #[arg(long, value_enum)]
+    format: Option<FormatArg>,
+    /// Write the flow as colours to this .png or into this folder
+    #[arg(long, value_name = "PATH")]
+    color: Option<PathBuf>,
+    /// Length shown in full colour; without it the longest displacement of the first pair
+    #[arg(long, value_name = "PX", allow_negative_numbers = true, requires = "color")]
+    scale: Option<f32>,
+    /// Write the first frame with arrows over it to this .png or into this folder
+    #[arg(long, value_name = "PATH")]
+    arrows: Option<PathBuf>,
+    /// Length of an arrow against its displacement
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        requires = "arrows"
+    )]
+    arrow_gain: f32,
+    /// Write how far each pixel's flow is to be trusted, 0 to 1, to this .npy or .png or into this folder (as .npy)
+    #[arg(long, value_name = "PATH")]
+    confidence: Option<PathBuf>,
+    /// Begin the first pair's search with this flow field
+    #[arg(long, value_name = "FILE")]
+    init: Option<PathBuf>,
+    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1
+    #[arg(long, value_name = "FILE")]
+    mask: Option<PathBuf>,
+    /// Begin each pair's search with the flow of the pair before
+    #[arg(long)]
+    warm_start: bool,
+    /// Size of raw gray frames, one byte a pixel, on standard input
+    #[arg(long, value_name = "WxH")]
+    raw: Option<Size>,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+/// What is given beside the frames.
+struct Given {
+    mask: Option<Plane>,
+    init: Option<FlowField>,
+}
+
+impl Flow {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        let mut flow = self.flow.farneback()?;
+        flow.initial_flow = self.init.is_some();
+        flow.certainty = self.mask.is_some();
+        flow.confidence = self.confidence.is_some();
+        let mut source = Source::open(&self.inputs, self.raw)?;
+        let single = self.inputs.len() == 2 && source.len() == Some(2);
+        self.check(single)?;
+        let targets = Targets::new(self, single)?;
+        let images = source.first_two()?;
+        let (size, first) = (images[0].size, &self.inputs[0]);
+        let given = Given {
+            mask: self.mask.as_ref().map(|path| input::plane(path, size, first.as_ref())).transpose()?,
+            init: self.init.as_ref().map(|path| initial(path, size, first.as_ref())).transpose()?,
+        };
+        let config = Config {
+            flow,
+            format: images[0].format,
+            warm_start: self.warm_start,
+            read_confidence: self.confidence.is_some(),
+            ..Config::default()
+        };
+        let mut engine = Engine::new(self.backend.open()?, size, &config)?;
+        let bar = progress(source.len());
+        let done = compute(&mut engine, source, images, given, targets, &bar);
+        bar.finish_and_clear();
+        let report = done?;
+        if !self.writes_to_stdout() {
+            report.print(self.json, self.outputs().iter().all(|path| path.is_none()))?;
+        }
+        Ok(Outcome::Done)
+    }
+
+    fn outputs(&self) -> [&Option<PathBuf>; 4] {
+        [&self.output, &self.color, &self.arrows, &self.confidence]
+    }
+
+    fn writes_to_stdout(&self) -> bool {
+        self.outputs().iter().any(|path| path.as_deref() == Some(Path::new("-")))
+    }
+
+    /// What would otherwise only be found after the first pair, or never.
+    fn check(&self, single: bool) -> Result<()> {
+        for (name, value) in [("--scale", self.scale), ("--arrow-gain", Some(self.arrow_gain))] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+                return Err(Error::parameter(name, value, "a finite number over 0"));
+            }
+        }
+        if self.json && self.writes_to_stdout() {
+            let expected = "none where results go to standard output";
+            return Err(Error::parameter("--json", "given", expected));
+        }
+        if single && self.warm_start {
+            return Err(Error::parameter("--warm-start", "given", "a sequence of frames, not two pictures"));
+        }
+        if !single && self.init.is_some() && !self.warm_start {
+            let expected = "--warm-start beside it in a sequence, where it is for the first pair only";
+            return Err(Error::parameter("--init", "given", expected));
+        }
+        Ok(())
+    }
+}
+
+fn compute(
+    engine: &mut Engine,
+    mut source: Source,
+    [mut first, mut second]: [Image; 2],
+    given: Given,
+    mut targets: Targets,
+    bar: &ProgressBar,
+) -> Result<Report> {
+    let mut report = Report::new(engine.adapter(), first.size);
+    let certainty = given.mask.as_ref();
+    let mut initial_flow = given.init.as_ref();
+    engine.process_with(&first.frame()?, &Extras { certainty, initial_flow: None })?;
+    targets.make_folders()?;
+    loop {
+        let output = engine.process_with(&second.frame()?, &Extras { certainty, initial_flow })?;
+        if let Some((flow, output)) = output.and_then(|output| Some((output.flow?, output))) {
+            targets.write(report.pairs, &Pair { first: &first, flow, confidence: output.confidence })?;
+            report.add(flow);
+        }
+        bar.inc(1);
+        initial_flow = None;
+        std::mem::swap(&mut first, &mut second);
+        if !source.next(&mut second)? {
+            break;
+        }
+    }
+    report.finish(engine.latency(), targets.scale());
+    Ok(report)
+}
+
+fn initial(path: &Path, size: Size, first: &Path) -> Result<FlowField> {
+    let flow = read_flow(path)?;
+    input::same_size(path, flow.size, size, first)?;
+    Ok(flow)
+}
+
+/// A bar on standard error, where that is a terminal.
+fn progress(frames: Option<u64>) -> ProgressBar {
+    let style = |template: &str| {
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+    };
+    match frames {
+        Some(2) => ProgressBar::hidden(),
+        Some(frames) => ProgressBar::new(frames.saturating_sub(1))
+            .with_style(style("{bar:40} {pos}/{len} pairs, {per_sec}, {eta} left")),
+        None => ProgressBar::new_spinner().with_style(style("{spinner} {pos} pairs, {per_sec}")),
+    }
+}

@@ -1,0 +1,67 @@
+//! The frames that come in, all of one size and pixel format.
+
+use std::path::PathBuf;
+
+use crate::error::{Error, Result};
+use crate::frame::{Frames, Image, PixelFormat, Size};
+
+/// A source whose frames belong together. Where one does not, the error names the first one too.
+pub(super) struct Source {
+    frames: Frames,
+    /// What errors call frames that are not files of their own.
+    stream: PathBuf,
+    first: Option<(PathBuf, PixelFormat)>,
+}
+
+impl Source {
+    pub(super) fn open(inputs: &[String], raw: Option<Size>) -> Result<Self> {
+        let frames = Frames::open(inputs, raw)?;
+        if raw.is_some() && inputs != ["-"] {
+            return Err(Error::parameter("--raw", "given", "none unless the input is -"));
+        }
+        let stream = if inputs == ["-"] { "standard input".to_owned() } else { inputs.join(" ") };
+        Ok(Self { frames, stream: stream.into(), first: None })
+    }
+
+    /// Frames in all, where that is known beforehand.
+    pub(super) fn len(&self) -> Option<u64> {
+        self.frames.len()
+    }
+
+    /// What the last frame read is called.
+    pub(super) fn name(&self) -> PathBuf {
+        self.frames.path().map_or_else(|| self.stream.clone(), PathBuf::from)
+    }
+
+    /// Reads the next frame into `image`. Returns false after the last one.
+    pub(super) fn next(&mut self, image: &mut Image) -> Result<bool> {
+        let read = self.frames.next_frame(image);
+        let more = match (read, &self.first) {
+            (Err(Error::SizeMismatch { what, found, expected }), Some((first, _))) => {
+                let expected = format!("{expected} as in {}", first.display());
+                return Err(Error::format(what, "size", found, expected));
+            }
+            (read, _) => read?,
+        };
+        if more {
+            let name = self.name();
+            let (first, format) = self.first.get_or_insert_with(|| (name.clone(), image.format));
+            if image.format != *format {
+                let expected = format!("{format} as in {}", first.display());
+                return Err(Error::format(name, "pixel format", image.format, expected));
+            }
+        }
+        Ok(more)
+    }
+
+    /// Reads the first two frames, without which there is no flow.
+    pub(super) fn first_two(&mut self) -> Result<[Image; 2]> {
+        let mut images = [Image::default(), Image::default()];
+        for (count, image) in images.iter_mut().enumerate() {
+            if !self.next(image)? {
+                return Err(Error::format(&self.stream, "number of frames", count, "at least 2"));
+            }
+        }
+        Ok(images)
+    }
+}

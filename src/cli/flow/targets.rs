@@ -1,0 +1,243 @@
+//! Where the results go, and in which format.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::Flow;
+use crate::cli::{input, print};
+use crate::error::{Error, Result};
+use crate::frame::{
+    FlowField, Image, PixelFormat, Plane, arrows, colour_wheel, flo, kitti, npy, picture, write_bytes,
+};
+
+/// Pixels between arrows.
+const ARROW_STEP: u32 = 16;
+
+/// Formats of a flow field.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FormatArg {
+    /// Middlebury .flo: two f32 a pixel
+    Flo,
+    /// KITTI .png: 16 bits, 1/64 px, to ±512 px
+    Kitti,
+    /// NumPy .npy: float32, height × width × 2
+    Npy,
+}
+
+impl FormatArg {
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Flo => "flo",
+            Self::Kitti => "png",
+            Self::Npy => "npy",
+        }
+    }
+
+    fn encode(self, flow: &FlowField) -> Result<Vec<u8>> {
+        match self {
+            Self::Flo => flo::encode(flow),
+            Self::Kitti => kitti::encode(flow),
+            Self::Npy => npy::encode(flow),
+        }
+    }
+}
+
+/// One pair's results.
+pub(super) struct Pair<'a> {
+    pub(super) first: &'a Image,
+    pub(super) flow: &'a FlowField,
+    pub(super) confidence: Option<&'a Plane>,
+}
+
+/// Where one kind of result goes.
+enum Place {
+    Stdout,
+    File(PathBuf),
+    Folder(PathBuf, &'static str),
+}
+
+enum Kind {
+    Flow(FormatArg),
+    Color,
+    Arrows { gain: f32 },
+    Confidence { npy: bool },
+}
+
+/// Where all results go.
+pub(super) struct Targets {
+    places: Vec<(Kind, Place)>,
+    scale: Option<f32>,
+    colours: bool,
+}
+
+impl Targets {
+    /// Checks what the arguments ask for, and touches nothing.
+    pub(super) fn new(args: &Flow, single: bool) -> Result<Self> {
+        let mut places = Vec::new();
+        if let Some(path) = &args.output {
+            places.push(flow_place(path, args.format, single)?);
+        } else if let Some(format) = args.format {
+            return Err(Error::parameter("--format", format.extension(), "an output (-o) beside it"));
+        }
+        for (path, kind) in
+            [(&args.color, Kind::Color), (&args.arrows, Kind::Arrows { gain: args.arrow_gain })]
+        {
+            if let Some(path) = path {
+                places.push((kind, place(path, single, "png", &["png"])?));
+            }
+        }
+        if let Some(path) = &args.confidence {
+            let place = place(path, single, "npy", &["npy", "png"])?;
+            let npy = matches!(&place, Place::Folder(..)) || extension(path) == "npy";
+            places.push((Kind::Confidence { npy }, place));
+        }
+        let targets = Self { places, scale: args.scale, colours: args.color.is_some() };
+        targets.check()?;
+        Ok(targets)
+    }
+
+    /// The length shown in full colour, if colours were written.
+    pub(super) fn scale(&self) -> Option<f32> {
+        self.scale.filter(|_| self.colours)
+    }
+
+    /// Makes the folders.
+    pub(super) fn make_folders(&self) -> Result<()> {
+        for (_, place) in &self.places {
+            if let Place::Folder(folder, _) = place {
+                fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the results of the pair of this number.
+    pub(super) fn write(&mut self, number: u64, pair: &Pair<'_>) -> Result<()> {
+        // All of them first, so that nothing is written if one cannot be.
+        let mut contents = Vec::new();
+        for (kind, _) in &self.places {
+            contents.push(match kind {
+                Kind::Flow(format) => format.encode(pair.flow)?,
+                Kind::Color => {
+                    let (image, scale) = colour_wheel(pair.flow, self.scale)?;
+                    // A sequence keeps its first scale, so that its colours can be compared.
+                    self.scale = Some(scale);
+                    picture::encode_png(&image)?
+                }
+                Kind::Arrows { gain } => {
+                    picture::encode_png(&arrows(&pair.first.frame()?, pair.flow, ARROW_STEP, *gain)?)?
+                }
+                Kind::Confidence { npy } => {
+                    let plane = pair.confidence.ok_or_else(|| {
+                        Error::parameter("--confidence", "given", "none: the plan computes no confidence")
+                    })?;
+                    if *npy { npy::encode_plane(plane)? } else { picture::encode_png(&gray(plane))? }
+                }
+            });
+        }
+        for ((_, place), bytes) in self.places.iter().zip(contents) {
+            match place {
+                Place::Stdout => print::bytes(&bytes)?,
+                Place::File(path) => write_bytes(path, &bytes)?,
+                Place::Folder(folder, extension) => {
+                    write_bytes(folder.join(format!("{number:06}.{extension}")), &bytes)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the folders are there or can be made, and that no result would replace another one.
+    fn check(&self) -> Result<()> {
+        let mut seen = Vec::new();
+        for (_, place) in &self.places {
+            match place {
+                Place::Folder(folder, _) => input::folder(folder)?,
+                Place::File(path) => {
+                    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+                    let parent = parent.unwrap_or(Path::new("."));
+                    fs::read_dir(parent).map_err(|source| Error::io(parent, source))?;
+                }
+                Place::Stdout => {}
+            }
+            let name = match place {
+                Place::Stdout => PathBuf::from("-"),
+                Place::File(path) => path.clone(),
+                Place::Folder(folder, extension) => folder.join(format!("NNNNNN.{extension}")),
+            };
+            if seen.contains(&name) {
+                let expected = "a place of its own for each result";
+                return Err(Error::parameter("output", format_args!("{} twice", name.display()), expected));
+            }
+            seen.push(name);
+        }
+        Ok(())
+    }
+}
+
+/// A plane of 0 to 1 as a picture, black to white.
+pub(in crate::cli) fn gray(plane: &Plane) -> Image {
+    // NaN becomes 0.
+    let data = plane.data.iter().map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8).collect();
+    Image { size: plane.size, format: PixelFormat::Gray8, data }
+}
+
+fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(Kind, Place)> {
+    if path == Path::new("-") {
+        let format = format.unwrap_or(FormatArg::Flo);
+        if !single && format == FormatArg::Kitti {
+            return Err(Error::parameter(
+                "--format",
+                "kitti",
+                "flo or npy for a sequence to standard output",
+            ));
+        }
+        return Ok((Kind::Flow(format), Place::Stdout));
+    }
+    if single && !is_folder(path) && format.is_some() {
+        let format = format.unwrap_or(FormatArg::Flo);
+        return Ok((Kind::Flow(format), Place::File(path.to_owned())));
+    }
+    let place = place(path, single, format.unwrap_or(FormatArg::Flo).extension(), &["flo", "png", "npy"])?;
+    let by_name = match extension(path).as_str() {
+        "png" => FormatArg::Kitti,
+        "npy" => FormatArg::Npy,
+        _ => FormatArg::Flo,
+    };
+    let format = if matches!(place, Place::File(_)) { by_name } else { format.unwrap_or(FormatArg::Flo) };
+    Ok((Kind::Flow(format), place))
+}
+
+/// A file of one of the given extensions, or a folder of files of one extension.
+fn place(path: &Path, single: bool, in_folder: &'static str, as_file: &[&str]) -> Result<Place> {
+    let extension = extension(path);
+    if single && path == Path::new("-") {
+        return Ok(Place::Stdout);
+    }
+    if is_folder(path) {
+        return Ok(Place::Folder(path.to_owned(), in_folder));
+    }
+    if single {
+        if !as_file.contains(&extension.as_str()) {
+            let found = if extension.is_empty() { "missing".to_owned() } else { format!(".{extension}") };
+            let expected = as_file.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" or ");
+            return Err(Error::format(path, "extension", found, expected));
+        }
+        return Ok(Place::File(path.to_owned()));
+    }
+    if path == Path::new("-") || as_file.contains(&extension.as_str()) {
+        return Err(Error::parameter("output", path.display(), "a folder, as the input is a sequence"));
+    }
+    Ok(Place::Folder(path.to_owned(), in_folder))
+}
+
+fn is_folder(path: &Path) -> bool {
+    path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/")
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase()
+}

@@ -1,0 +1,67 @@
+//! What the subcommands read, and whether it belongs together.
+
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::frame::{Image, PixelFormat, Plane, Size, npy, picture};
+
+/// Checks that what `path` holds is as large as what `other` holds.
+pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
+}
+
+/// Checks that a folder is there or can be made, and makes nothing.
+pub(super) fn folder(path: &Path) -> Result<()> {
+    let there = path.ancestors().find(|folder| folder.exists());
+    // An ancestor of no name is the working folder.
+    let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::read_dir(there).map(|_| ()).map_err(|source| Error::io(there, source))
+}
+
+/// Two pictures of one size and pixel format.
+pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
+    let first = picture::read(a)?;
+    let second = picture::read(b)?;
+    same_size(b, second.size, first.size, a)?;
+    if second.format != first.format {
+        let expected = format!("{} as in {}", first.format, a.display());
+        return Err(Error::format(b, "pixel format", second.format, expected));
+    }
+    Ok([first, second])
+}
+
+/// A mask or certainty, 0 to 1: a picture, black to white, or a plane in a `.npy` file. It must be as large as `other`.
+pub(super) fn plane(path: &Path, size: Size, other: &Path) -> Result<Plane> {
+    let plane = if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
+        npy::read_plane(path)?
+    } else {
+        from_image(&picture::read(path)?)
+    };
+    same_size(path, plane.size, size, other)?;
+    if let Some(value) = plane.data.iter().find(|value| !(0.0..=1.0).contains(*value)) {
+        return Err(Error::format(path, "a value", value, "0 to 1"));
+    }
+    Ok(plane)
+}
+
+fn from_image(image: &Image) -> Plane {
+    let share = |value: u8| f32::from(value) / 255.0;
+    let data = match image.format {
+        PixelFormat::Gray8 => image.data.iter().map(|&gray| share(gray)).collect(),
+        PixelFormat::Gray16 => image
+            .data
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0)
+            .collect(),
+        // The brightest channel, so that a mask painted in any colour counts.
+        PixelFormat::Rgb8 | PixelFormat::Rgba8 => (image.data.chunks_exact(image.format.bytes()))
+            .map(|pixel| share(pixel.iter().take(3).copied().max().unwrap_or(0)))
+            .collect(),
+    };
+    Plane { size: image.size, data }
+}

@@ -1,0 +1,114 @@
+//! The command line: one file a subcommand. What it does is there for embedders too, in the modules above.
+//!
+//! Results go to standard output and everything else to standard error. An error is one line and ends the program with
+//! 2; a check that was asked for and failed ends it with 1.
+
+mod args;
+mod backend;
+mod bench;
+mod buffers;
+mod crosscheck;
+mod demo;
+mod devices;
+mod environment;
+mod eval;
+mod flow;
+mod input;
+mod print;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use crate::error::Result;
+
+/// Dense optical flow on the GPU and the CPU, with a stated bound between them.
+#[derive(Parser, Debug)]
+#[command(
+    name = "viewsphere",
+    version,
+    about,
+    after_help = "\
+Examples:
+  viewsphere demo                                    a made-up scene, its flow and its errors as pictures
+  viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
+  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  viewsphere devices                                 what there is to compute on
+
+Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Flow(Box<flow::Flow>),
+    Crosscheck(Box<crosscheck::Crosscheck>),
+    Eval(eval::Eval),
+    Bench(Box<bench::Bench>),
+    Devices(devices::Devices),
+    Demo(Box<demo::Demo>),
+}
+
+/// Whether what was asked for holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    Done,
+    CheckFailed,
+}
+
+/// Runs the program on the process's arguments. To be called before any thread is started.
+pub fn main() -> ExitCode {
+    environment::prepare();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    match cli.command.run() {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::CheckFailed) => ExitCode::from(1),
+        Err(error) => {
+            print::note(error);
+            ExitCode::from(2)
+        }
+    }
+}
+
+impl Command {
+    fn run(&self) -> Result<Outcome> {
+        match self {
+            Self::Flow(command) => command.run(),
+            Self::Crosscheck(command) => command.run(),
+            Self::Eval(command) => command.run(),
+            Self::Bench(command) => command.run(),
+            Self::Devices(command) => command.run(),
+            Self::Demo(command) => command.run(),
+        }
+    }
+}
+
+/// Help that was asked for, or what is wrong with the arguments, on one line.
+fn usage(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // Nothing to do where it cannot be shown.
+            let _ = error.print();
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            print::note("the subcommand is missing; see viewsphere --help");
+            ExitCode::from(2)
+        }
+        _ => {
+            let text = error.to_string();
+            let problem = text.split("\n\nUsage:").next().unwrap_or(&text);
+            let problem = problem.split("\n\nFor more").next().unwrap_or(problem);
+            let problem = problem.trim_start_matches("error: ");
+            print::note(format_args!("{problem}; see viewsphere --help"));
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! How far the flow can be trusted: rows of the averaged evidence averaged in turn, and 1 against the standard error that
+//! they predict.
+//!
+//! The equations `A d = Δb` of a window's pixels determine d by least squares. What the found flow leaves of Δb is their
+//! noise, of variance r, and the least eigenvalue λ of the mean of AᵀA is the curvature in the direction that is known
+//! least; so the error there has a standard deviation of about `σ = √((r + 0.001) / λ)` pixels, where 0.001 stands for
+//! what rounding to whole gray levels leaves. The confidence is `0.25 / (0.25 + σ)`, times the share of the window that
+//! both frames show: 1 where the flow is certain, ½ at a quarter of a pixel, 0 where there is nothing to go by.
+
+use super::cases::{Fill, cases as each_fill};
+use super::solve::{average, equations};
+pub use super::solve::Params;
+use super::tables;
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel};
+
+const NOISE: f32 = 0.001;
+const HALF: f32 = 0.25;
+const SMALLEST: f32 = 1e-6;
+
+kernel!(
+    "confidence" + ["image", "window", "average"],
+    reference(Params; columns, window) -> (confidence),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 2e-3,
+        relative: 0.0,
+        reason: "the least eigenvalue is a difference: with eigenvalues in a ratio of some hundred it keeps four digits, \
+                 and where all are 0 its rounding stands beside 10⁻⁶",
+    },
+);
+
+fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]) {
+    let width = p.width as usize;
+    average(p, columns, window, confidence, 1, #[inline(always)] |[g_xx, g_xy, g_yy, rest, coverage], row| {
+        for x in 0..width {
+            let half_difference = 0.5 * (g_xx[x] - g_yy[x]);
+            let root = (half_difference * half_difference + g_xy[x] * g_xy[x]).sqrt();
+            let weakest = 0.5 * (g_xx[x] + g_yy[x]) - root;
+            let error = ((rest[x] + NOISE) / weakest.max(SMALLEST)).sqrt();
+            row[x] = coverage[x].clamp(0.0, 1.0) * HALF / (HALF + error);
+        }
+    });
+}
+
+/// The equations of `solve`, whose right-hand sides stand in, made positive, for residual and coverage.
+fn cases(size: Size) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, radius: 6 };
+    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[size.stride()], size, |fill| {
+        let mut evidence = equations(size, fill);
+        for rows in evidence.chunks_exact_mut(5 * size.stride()) {
+            for value in &mut rows[3 * size.stride()..] {
+                *value = value.abs().min(10.0) * 0.1;
+            }
+        }
+        vec![evidence, tables::window_from(&tables::window(13, false), 8)]
+    })
+}

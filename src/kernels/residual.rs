@@ -1,0 +1,89 @@
+//! How well the two frames' expansions agree under the flow that was found, pixel by pixel.
+//!
+//! Channels of the result: AᵀA (xx, xy, yy), the square of what the flow leaves of Δb = −½ (b2 − b1), and 1 where both
+//! frames show the place, times the first frame's certainty, which all of them are weighted with.
+
+use super::cases::{Fill, cases as each_fill, planes, quads};
+use super::pair::{BLOCK, Pair, border_weight, each_block, fours, squared};
+use super::rows::{Split, bands, dimensions};
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel, params};
+
+params! {
+    /// Shape of the picture.
+    struct Params {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    }
+}
+
+kernel!(
+    "residual" + ["equations", "second"],
+    reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty, flow) -> (evidence),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 2e-2,
+        relative: 1e-4,
+        reason: "a place's fraction has 2⁻¹⁴ px at 641; the expansions differ by up to 40 from pixel to pixel in these \
+                 cases, and ‖Δb‖² is up to 800",
+    },
+);
+
+#[allow(clippy::too_many_arguments, reason = "they are the kernel's buffers")]
+fn reference(
+    p: &Params,
+    quad_0: &[f32],
+    cross_term_0: &[f32],
+    quad_1: &[f32],
+    cross_term_1: &[f32],
+    certainty: &[f32],
+    flow: &[f32],
+    evidence: &mut [f32],
+) {
+    let (width, height, stride) = dimensions(p.width, p.height);
+    let pair =
+        Pair { quad_0: fours(quad_0), cross_term_0, quad_1: fours(quad_1), cross_term_1, width, height, stride };
+    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
+    bands(evidence, &mut [], split, #[inline(always)] |band| {
+        for (x, weight) in band.scratch.iter_mut().enumerate() {
+            *weight = border_weight(x.min(width - 1), width);
+        }
+        for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
+            let y = band.y0 + i;
+            let weight_y = border_weight(y, height);
+            each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, #[inline(always)] |x0, u, v| {
+                let model = pair.model(x0, y, u, v);
+                let mut channels = [[0.0; BLOCK]; 5];
+                for (i, weight_x) in band.scratch[x0..][..u.len()].iter().enumerate() {
+                    let share = model.inside[i] * certainty[y * stride + x0 + i];
+                    let w = share * weight_x * weight_y;
+                    let (b_x, b_y) = (w * model.b_x[i], w * model.b_y[i]);
+                    [channels[0][i], channels[1][i], channels[2][i]] =
+                        squared(w * model.a_xx[i], w * model.a_xy[i], w * model.a_yy[i]);
+                    channels[3][i] = b_x * b_x + b_y * b_y;
+                    channels[4][i] = share;
+                }
+                channels
+            });
+        }
+    });
+}
+
+fn cases(size: Size) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height };
+    let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
+        // Flows of 0 keep whole places, where a wrong border shows; a flow of 10¹² is far outside.
+        let flow = if fill == Fill::Extreme { [0.0, 1e12] } else { [-6.0, 6.0] };
+        vec![
+            quads(size, fill, ranges, 1),
+            planes(size, 1, fill, [-4.0, 4.0], 2),
+            quads(size, fill, ranges, 3),
+            planes(size, 1, fill, [-4.0, 4.0], 4),
+            planes(size, 1, fill, [0.0, 1.0], 5),
+            planes(size, 2, fill, flow, 6),
+        ]
+    })
+}

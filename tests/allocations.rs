@@ -1,0 +1,141 @@
+//! What a frame allocates once a stream has begun.
+//!
+//! On the CPU it is nothing: where a picture is large enough to be shared out, rayon takes a block for its queue of jobs
+//! now and then. On the GPU wgpu allocates in every submission, so the engine is held against the same work done with
+//! wgpu by hand. The two differ by a few, within [`SLACK`] a frame: wgpu itself is not the same in both (a bare `unmap`
+//! was seen to take two more in the engine, a submission three fewer). So the bound shows that nothing as large as a
+//! buffer or as many as a step's worth is ours; that what is held does not grow is exact.
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
+
+use viewsphere::engine::{Backend, Config, Engine};
+use viewsphere::frame::{Frame, PixelFormat, Size};
+use viewsphere::gpu::{Gpu, GpuExecutor, GpuOptions};
+use viewsphere::plan::{Plan, Shape};
+use wgpu::{BufferDescriptor, BufferUsages, MapMode, PollType};
+
+/// Counts what goes through the system's allocator.
+struct Counting;
+
+static COUNT: AtomicU64 = AtomicU64::new(0);
+static LIVE: AtomicI64 = AtomicI64::new(0);
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[allow(unsafe_code, reason = "an allocator cannot be written without; every call is handed on as it is")]
+// SAFETY: all of it is done by the system's allocator, with the arguments that came in.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Relaxed);
+        LIVE.fetch_add(layout.size() as i64, Relaxed);
+        // SAFETY: as above.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size() as i64, Relaxed);
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+const WARM_UP: usize = 30;
+const FRAMES: usize = 300;
+/// Allocations of a frame, of about a hundred, that the engine may have more than the work by hand.
+const SLACK: u64 = 4;
+
+/// Two frames of noise.
+fn noise(size: Size) -> [Vec<u8>; 2] {
+    let mut state = 1u32;
+    [0, 1].map(|_| {
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        (0..size.pixels()).map(|_| next()).collect()
+    })
+}
+
+/// Allocations of these frames in all, and by how much more is held after them.
+fn measure(mut frame: impl FnMut(usize)) -> (u64, i64) {
+    (0..WARM_UP).for_each(&mut frame);
+    let (count, live) = (COUNT.load(Relaxed), LIVE.load(Relaxed));
+    (WARM_UP..WARM_UP + FRAMES).for_each(&mut frame);
+    (COUNT.load(Relaxed) - count, LIVE.load(Relaxed) - live)
+}
+
+fn stream(backend: Backend, size: Size, config: &Config) -> (u64, i64) {
+    let mut engine = Engine::new(backend, size, config).unwrap();
+    let data = noise(size);
+    measure(|i| {
+        let frame = Frame::new(size, PixelFormat::Gray8, &data[i & 1]).unwrap();
+        let output = engine.process(&frame).unwrap();
+        assert!(i == 0 || output.unwrap().flow.unwrap().data.len() == size.pixels());
+        assert!(i == 0 || engine.latency().count > 0);
+    })
+}
+
+/// The same work as an engine's, by hand.
+fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
+    let (device, queue) = (gpu.device(), gpu.queue());
+    let exec = GpuExecutor::new(gpu, plan).unwrap();
+    let (frame_bytes, flow_bytes) =
+        (4 * plan.buf(plan.frame).len as u64, 4 * Shape::planar(plan.size, 2).len() as u64);
+    let buffer = |size, usage, mapped_at_creation| {
+        device.create_buffer(&BufferDescriptor { label: Some("by hand"), size, usage, mapped_at_creation })
+    };
+    let upload = buffer(frame_bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC, true);
+    let readback = buffer(flow_bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST, false);
+    measure(|i| {
+        let mut view = upload.get_mapped_range_mut(..).unwrap();
+        view.slice(..).fill(i as u8);
+        drop(view);
+        upload.unmap();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(&upload, 0, exec.buf(plan.frame), 0, frame_bytes);
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            exec.record_ingest(&mut pass, i & 1);
+            exec.record_pair(&mut pass, i & 1);
+        }
+        encoder.copy_buffer_to_buffer(exec.buf(plan.flow[i & 1]), 0, &readback, 0, flow_bytes);
+        let submission_index = Some(queue.submit([encoder.finish()]));
+        upload.map_async(MapMode::Write, .., |_| {});
+        readback.map_async(MapMode::Read, .., |_| {});
+        device.poll(PollType::Wait { submission_index, timeout: None }).unwrap();
+        drop(readback.get_mapped_range(..).unwrap());
+        readback.unmap();
+    })
+}
+
+/// One test, as the counters are the process's.
+#[test]
+fn a_frame_takes_no_memory() {
+    let small = Size::new(64, 48);
+    for config in [Config::default(), Config { timestamps: true, warm_start: true, ..Config::default() }] {
+        assert_eq!(stream(Backend::Cpu, small, &config), (0, 0), "on the CPU");
+    }
+    let (count, live) = stream(Backend::Cpu, Size::new(320, 240), &Config::default());
+    eprintln!("CPU, shared out: {count} allocations in {FRAMES} frames, {live} bytes more held");
+    assert!(count <= FRAMES as u64, "{count} allocations in {FRAMES} frames");
+    assert!(live.abs() < 64 << 10, "{live} bytes");
+
+    let Some(gpu) = common::gpu() else { return };
+    let config = Config::default();
+    let plan = config.flow.plan(small, config.format).unwrap();
+    // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
+    let name = gpu.adapter().name.clone();
+    let open = || Gpu::new(&GpuOptions { adapter: Some(name.clone()), allow_software: true }).unwrap();
+    let (hand, hand_live) = by_hand(&open(), &plan);
+    let (ours, live) = stream(Backend::Gpu(open()), small, &config);
+    eprintln!("by hand: {hand} allocations in {FRAMES} frames, {hand_live} bytes more held");
+    eprintln!("engine:  {ours} allocations in {FRAMES} frames, {live} bytes more held");
+    assert!(hand > 0, "the counter does not count");
+    assert!(ours <= hand + SLACK * FRAMES as u64, "{ours} allocations, {hand} by hand");
+    assert!(live < 64 << 10, "{live} bytes more after {FRAMES} frames");
+}
