@@ -110,9 +110,8 @@ fn planar(field: &FlowField) -> Vec<f32> {
     let size = field.size;
     let mut values = Vec::with_capacity(Shape::planar(size, 2).len());
     for row in field.data.chunks_exact(size.width as usize) {
-        for channel in 0..2 {
-            values.extend((0..size.stride()).map(|x| row[x.min(row.len() - 1)][channel]));
-        }
+        let channel = |i: usize| (0..size.stride()).map(move |x| row[x.min(row.len() - 1)][i]);
+        values.extend(channel(0).chain(channel(1)));
     }
     values
 }
