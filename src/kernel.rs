@@ -9,6 +9,7 @@ use crate::frame::Size;
 /// point is `main`. In Rust the reference takes the same things in the same order. Buffers are `f32`; a plane of a
 /// picture has rows of [`Size::stride`] values, whose surplus repeats the row's last pixel, and a picture of several
 /// channels holds row 0 of each channel, then row 1 of each channel, and so on.
+#[derive(Clone, Copy)]
 pub struct Kernel {
     /// The one name: of the shader file, the module, the label, the test and the bench.
     pub name: &'static str,

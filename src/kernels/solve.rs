@@ -85,9 +85,18 @@ fn known(d: f32) -> f32 {
 /// Equations of a model whose two eigenvalues lie between the given bounds, for some displacement up to 8 px.
 fn cases(size: Size) -> Vec<Case> {
     let params = Params { width: size.width, height: size.height, radius: 6 };
-    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {
-        vec![equations(size, fill), tables::window_from(&tables::window(13, false), 8)]
-    })
+    let window = tables::window_from(&tables::window(13, false), 8);
+    let mut cases = each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {
+        vec![equations(size, fill), window.clone()]
+    });
+    // Determinants near the 10⁻³ that keeps them off zero, where it decides the displacement; and products that
+    // overflow though the equations themselves do not.
+    for (name, factor) in [("weak", 0.01), ("overflowing", 1e25)] {
+        let scaled = equations(size, Fill::Textured).iter().map(|value| factor * value).collect();
+        let (params, outputs) = (bytemuck::bytes_of(&params).to_vec(), vec![2 * size.stride() * size.height as usize]);
+        cases.push(Case { name: name.to_owned(), params, inputs: vec![scaled, window.clone()], outputs, extent: size });
+    }
+    cases
 }
 
 pub(super) fn equations(size: Size, fill: Fill) -> Vec<f32> {

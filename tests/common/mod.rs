@@ -1,6 +1,9 @@
 //! What the tests share: the adapter, chosen on purpose and named.
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod pair;
+pub(crate) mod sides;
+
 use std::sync::OnceLock;
 
 use viewsphere::gpu::{Gpu, GpuOptions};

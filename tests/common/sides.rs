@@ -1,0 +1,41 @@
+//! The two sides of a kernel, run on the kernel's own cases and held against each other.
+
+use viewsphere::Result;
+use viewsphere::frame::Size;
+use viewsphere::gpu::Gpu;
+use viewsphere::kernel::Kernel;
+use viewsphere::kernels::compare::{Difference, POISON, compare};
+
+/// The smallest picture, one with a part of a vector and of a workgroup, one just over whole ones, and a large odd one.
+pub(crate) const SIZES: [Size; 4] =
+    [Size::new(1, 1), Size::new(7, 5), Size::new(65, 33), Size::new(641, 363)];
+
+/// One output of one case.
+pub(crate) struct Compared {
+    /// Kernel, size, case and output.
+    pub(crate) what: String,
+    /// How far the shader is from the reference.
+    pub(crate) difference: Difference,
+}
+
+/// Runs both sides on every case at every size.
+pub(crate) fn compare_sides(gpu: &Gpu, kernel: &Kernel) -> Result<Vec<Compared>> {
+    let mut compared = Vec::new();
+    for size in SIZES {
+        for case in (kernel.cases)(size) {
+            let inputs: Vec<&[f32]> = case.inputs.iter().map(Vec::as_slice).collect();
+            let mut expected: Vec<Vec<f32>> = case.outputs.iter().map(|len| vec![POISON; *len]).collect();
+            let mut outputs: Vec<&mut [f32]> = expected.iter_mut().map(Vec::as_mut_slice).collect();
+            (kernel.reference)(&case.params, &inputs, &mut outputs);
+            let extent = [case.extent.width, case.extent.height];
+            let found = gpu.run_kernel(kernel, &case.params, &inputs, &case.outputs, extent)?;
+            for ((name, expected), found) in kernel.outputs.iter().zip(&expected).zip(&found) {
+                compared.push(Compared {
+                    what: format!("{} at {size}, {}: {name} of {}", kernel.name, case.name, case.extent),
+                    difference: compare(expected, found, kernel.tolerance),
+                });
+            }
+        }
+    }
+    Ok(compared)
+}

@@ -1,0 +1,159 @@
+//! The errors of our fields on public pairs with known truth, against published figures of OpenCV's fields.
+//!
+//! The pictures are not part of this crate: `$VIEWSPHERE_DATA` says where they lie, or `../shared/data`. Without them
+//! nothing is tested, and the test says so.
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+#![allow(clippy::approx_constant, reason = "an error of 3.14° has nothing to do with π")]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::pair::{On, flow};
+use viewsphere::eval::flow_error;
+use viewsphere::flow::{Farneback, Window};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, flo, picture};
+
+/// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a
+/// unit, is what our fields' distance from OpenCV's may add.
+const BOUNDS: Figures = [0.0006, 0.006];
+
+/// Mean endpoint error in pixels and mean angular error in degrees.
+type Figures = [f64; 2];
+
+/// A pair and the errors of OpenCV's fields with the settings light, heavy and heavy-gauss.
+struct Pair {
+    name: &'static str,
+    images: [&'static str; 2],
+    truth: &'static str,
+    mask: Option<&'static str>,
+    figures: [Figures; 3],
+}
+
+const MASK: Option<&str> = Some("yosemite/derived_mask_land.png");
+
+/// A table of errors of OpenCV 4.13's fields, not of ours. Sequences of pictures have the truth of one frame, to which
+/// it is compared whichever pair the frame belongs to; the sky, which has none, is masked out.
+const PAIRS: [Pair; 5] = [
+    Pair {
+        name: "Yosemite 9 to 10",
+        images: ["yosemite/derived_yos09.png", "yosemite/derived_yos10.png"],
+        truth: "yosemite/derived_flow09.flo",
+        mask: MASK,
+        figures: [[0.162, 3.05], [0.168, 3.14], [0.588, 5.42]],
+    },
+    Pair {
+        name: "Yosemite 8 to 9",
+        images: ["yosemite/derived_yos08.png", "yosemite/derived_yos09.png"],
+        truth: "yosemite/derived_flow09.flo",
+        mask: MASK,
+        figures: [[0.144, 2.68], [0.186, 2.83], [0.462, 4.81]],
+    },
+    Pair {
+        name: "RubberWhale",
+        images: ["middlebury/RubberWhale/frame10.png", "middlebury/RubberWhale/frame11.png"],
+        truth: "middlebury/RubberWhale/flow10.flo",
+        mask: None,
+        figures: [[0.361, 12.33], [0.327, 11.18], [0.338, 11.40]],
+    },
+    Pair {
+        name: "Dimetrodon",
+        images: ["middlebury/Dimetrodon/frame10.png", "middlebury/Dimetrodon/frame11.png"],
+        truth: "middlebury/Dimetrodon/flow10.flo",
+        mask: None,
+        figures: [[0.937, 23.34], [0.859, 19.99], [0.965, 23.32]],
+    },
+    Pair {
+        name: "Venus",
+        images: ["middlebury/Venus/frame10.png", "middlebury/Venus/frame11.png"],
+        truth: "middlebury/Venus/flow10.flo",
+        mask: None,
+        figures: [[1.441, 21.98], [1.442, 22.12], [1.670, 25.10]],
+    },
+];
+
+fn settings() -> [(&'static str, Farneback); 3] {
+    let light = Farneback {
+        pyr_scale: 0.5,
+        levels: 3,
+        winsize: 15,
+        iterations: 3,
+        poly_n: 5,
+        poly_sigma: 1.2,
+        window: Window::Box,
+        ..Farneback::default()
+    };
+    let heavy = Farneback { levels: 5, winsize: 13, iterations: 10, poly_sigma: 1.1, ..light.clone() };
+    let gauss = Farneback { window: Window::Gaussian, ..heavy.clone() };
+    [("light", light), ("heavy", heavy), ("heavy-gauss", gauss)]
+}
+
+fn folder() -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let folder = std::env::var_os("VIEWSPHERE_DATA").map_or_else(beside, PathBuf::from);
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is not there", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+/// A picture in gray as the figures were computed from: OpenCV's PNG reader truncates its weights of red, green and
+/// blue, where this crate's own conversion rounds.
+fn gray(path: &Path) -> Image {
+    let image = picture::read(path).unwrap();
+    let data = match image.format {
+        PixelFormat::Gray8 => image.data,
+        PixelFormat::Rgb8 => image.data.as_chunks().0.iter().map(|rgb| luma(*rgb)).collect(),
+        other => panic!("{}: {other}", path.display()),
+    };
+    Image { size: image.size, format: PixelFormat::Gray8, data }
+}
+
+fn luma(rgb: [u8; 3]) -> u8 {
+    let [r, g, b] = rgb.map(u32::from);
+    ((9797 * r + 19234 * g + 3737 * b) >> 15) as u8
+}
+
+fn mask(path: &Path) -> Plane {
+    let image = picture::read(path).unwrap();
+    assert_eq!(image.format, PixelFormat::Gray8);
+    Plane { size: image.size, data: image.data.iter().map(|v| f32::from(u8::from(*v > 0))).collect() }
+}
+
+fn check(on: On<'_>, chosen: &[&str]) {
+    let Some(folder) = folder() else { return };
+    let mut problems = Vec::new();
+    for pair in &PAIRS {
+        let images = pair.images.map(|file| gray(&folder.join(file)));
+        let truth = flo::read(folder.join(pair.truth)).unwrap();
+        let mask = pair.mask.map(|file| mask(&folder.join(file)));
+        for ((setting, config), figures) in settings().iter().zip(pair.figures) {
+            if !chosen.contains(setting) {
+                continue;
+            }
+            let found: FlowField = flow(on, config, images.each_ref(), None);
+            let error = flow_error(&truth, &found, mask.as_ref()).unwrap();
+            let found = [error.aee_px, error.aae_deg];
+            let what = format!("{}, {setting} on the {}", pair.name, on.name());
+            println!("{what}: {:.6} px, {:.6}°, expected {figures:?}", found[0], found[1]);
+            let close = |i: usize| (found[i] - figures[i]).abs() <= BOUNDS[i];
+            if !(close(0) && close(1)) {
+                problems.push(format!("{what}: {found:?}, expected {figures:?}"));
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn the_cpu_errs_as_opencv_does() {
+    check(On::Cpu, &["light", "heavy", "heavy-gauss"]);
+}
+
+#[test]
+fn the_gpu_errs_as_opencv_does() {
+    if let Some(gpu) = common::gpu() {
+        check(On::Gpu(&gpu), &["light", "heavy-gauss"]);
+    }
+}

@@ -1,0 +1,167 @@
+//! The test of the tests: shaders with one mistake each, which the comparison with the reference or the check against
+//! the Rust side must find.
+
+mod common;
+
+use common::sides::compare_sides;
+use viewsphere::gpu::reflect;
+use viewsphere::kernel::Kernel;
+use viewsphere::kernels::{
+    ALL, area, binomial, compare, confidence, expansion_x, expansion_y, luma, matrices, resample_x,
+    resample_y, residual, solve, upsample, window_y,
+};
+
+/// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
+fn mutant(kernel: &Kernel, from: &str, to: &str) -> Kernel {
+    let found = kernel.source.matches(from).count();
+    assert_eq!(found, 1, "{}: {from:?} stands in the shader so many times", kernel.name);
+    // A kernel's text lives as long as the program; that of a few mutants may, too.
+    Kernel { source: kernel.source.replacen(from, to, 1).leak(), ..*kernel }
+}
+
+/// Mistakes that leave a shader valid: only its results tell.
+#[rustfmt::skip]
+const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
+    (&luma::KERNEL, "19235u", "19236u"),
+    (&luma::KERNEL, " + 16384u", ""),
+    (&luma::KERNEL, "vec4u(0u, 8u, 16u, 24u)", "vec4u(24u, 16u, 8u, 0u)"),
+    (&binomial::KERNEL, "reflect_101(x - 1, n)", "u32(max(x - 1, 0))"),
+    (&binomial::KERNEL, "row(x0, i32(y0) - 1)", "row(x0, i32(y0))"),
+    (&binomial::KERNEL, "let y = y0 + i;", "let y = y0 + i; if y == 4u { continue; }"),
+    (&resample_y::KERNEL, "first + i32(params.taps)", "first + i32(params.taps) - 1"),
+    (&resample_y::KERNEL, "i32(params.taps / 2u)", "i32(params.taps / 2u) + 1"),
+    (&resample_x::KERNEL, "first + i32(params.taps)", "first + i32(params.taps) - 1"),
+    (&resample_x::KERNEL, "id.x >= stride", "id.x >= params.width"),
+    (&expansion_y::KERNEL, "w.z * f5 + w.w * f6", "w.z * f5 + w.w * f5"),
+    (&expansion_y::KERNEL, "clamp_index(y, params.height)", "reflect_101(y, i32(params.height))"),
+    (&expansion_x::KERNEL, "params.inv_xx * m.m_yy", "params.inv_xx * m.m_xx"),
+    (&expansion_x::KERNEL, "last >= 1u", "true"),
+    (&expansion_x::KERNEL, "params.inv_xy * m.m_xy", "2.0 * params.inv_xy * m.m_xy"),
+    (&upsample::KERNEL, "min(left + 1u, params.in_width - 1u)", "left"),
+    (&upsample::KERNEL, "params.scale * sample(x, y, 1u)", "sample(x, y, 1u)"),
+    (&area::KERNEL, "cover.w, i + 1u", "1.0, i + 1u"),
+    (&area::KERNEL, "all(abs(d) <= vec2f(1e9))", "true"),
+    (&matrices::KERNEL, "0.14, distance", "0.15, distance"),
+    (&matrices::KERNEL, "0.4472, distance", "0.45, distance"),
+    (&matrices::KERNEL, "let far = n - 1u - i", "let far = n - i"),
+    (&matrices::KERNEL, "whole < vec2f(f32(params.width)", "whole <= vec2f(f32(params.width)"),
+    (&matrices::KERNEL, "0.5 * (first.quad.w + other.quad.w)", "first.quad.w"),
+    (&matrices::KERNEL, "place - whole", "place"),
+    (&window_y::KERNEL, "clamp_index(y, params.height)", "clamp_index(y, max(params.height, 2u) - 1u)"),
+    (&window_y::KERNEL, "(2u * params.radius + 4u) / 4u", "(2u * params.radius) / 4u"),
+    (&window_y::KERNEL, "y < i32(params.height)", "y < i32(params.height) - 1"),
+    (&solve::KERNEL, "known((g_xx * h_y", "((g_xx * h_y"),
+    (&solve::KERNEL, " + 1e-3", ""),
+    (&solve::KERNEL, " + 1e-3", " + 1.01e-3"),
+    (&solve::KERNEL, "let last = i32((params.width + 3u) / 4u) - 1", "let last = i32((params.width + 3u) / 4u) - 2"),
+    (&solve::KERNEL, "repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), 4u * four, params.width)",
+        "known((g_yy * h_x - g_xy * h_y) * scale)"),
+    (&residual::KERNEL, "select(0.0, certainty[i], second.inside)", "certainty[i]"),
+    (&residual::KERNEL, "second, vec2f());", "second, d);"),
+    (&confidence::KERNEL, "(g_xx + g_yy) - sqrt", "(g_xx + g_yy) + sqrt"),
+    (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
+];
+
+#[test]
+fn the_comparison_finds_every_mistake() {
+    let Some(gpu) = common::gpu() else { return };
+    let mut survivors = Vec::new();
+    for (kernel, from, to) in WRONG_RESULTS {
+        let compared = compare_sides(&gpu, &mutant(kernel, from, to))
+            .unwrap_or_else(|error| panic!("{from:?} as {to:?}: {error}"));
+        match compared.iter().find(|compared| compared.difference.breaches > 0) {
+            Some(found) => println!("{}: {from:?} as {to:?} found at {}", kernel.name, found.what),
+            None => survivors.push(format!("{}: {from:?} as {to:?}", kernel.name)),
+        }
+    }
+    assert!(survivors.is_empty(), "not found:\n{}", survivors.join("\n"));
+}
+
+#[test]
+fn every_kernel_has_a_mistake_to_find() {
+    for kernel in ALL {
+        let mistakes = WRONG_RESULTS.iter().filter(|(of, _, _)| of.name == kernel.name).count();
+        assert!(mistakes > 0, "{} has none", kernel.name);
+    }
+}
+
+/// A row that is never stored shows as the poison that was there before, whatever the right values are.
+#[test]
+fn a_row_never_stored_is_found_as_poison() {
+    let Some(gpu) = common::gpu() else { return };
+    let skips = mutant(&window_y::KERNEL, "y < i32(params.height)", "y < i32(params.height) - 1");
+    let compared = compare_sides(&gpu, &skips).unwrap_or_else(|error| panic!("{error}"));
+    for common::sides::Compared { what, difference } in compared {
+        let worst = difference.worst.unwrap_or_else(|| panic!("{what}: nothing found"));
+        assert_eq!(worst.found.to_bits(), compare::POISON.to_bits(), "{what}: {worst:?}");
+    }
+}
+
+#[track_caller]
+fn refused(kernel: &Kernel, replacements: &[(&str, &str)], reason: &str) {
+    let wrong = replacements.iter().fold(*kernel, |kernel, (from, to)| mutant(&kernel, from, to));
+    match reflect(&wrong) {
+        Ok(shape) => panic!("{replacements:?} was taken: {shape:?}"),
+        Err(error) => assert!(error.to_string().contains(reason), "{error}, expected {reason:?}"),
+    }
+}
+
+#[test]
+fn a_layout_that_differs_from_rust_is_refused() {
+    let fields =
+        [("inv_1_xx: f32, // (1, x²)", "inv_xx: f32,"), ("inv_xx: f32,   // (x², x²)", "inv_1_xx: f32,")];
+    refused(&expansion_x::KERNEL, &fields, "in WGSL and");
+    refused(
+        &solve::KERNEL,
+        &[("    width: u32,\n    height: u32,", "    height: u32,\n    width: u32,")],
+        "in WGSL and",
+    );
+    refused(&upsample::KERNEL, &[("in_height: u32,", "in_height: u32, unused: u32,")], "params has");
+    refused(&luma::KERNEL, &[("    format: u32, ", "    format: u32, end: vec2f, ")], "params has");
+}
+
+#[test]
+fn bindings_that_differ_from_rust_are_refused() {
+    let renamed = [("read> window:", "read> weights:"), ("= window[k]", "= weights[k]")];
+    refused(&solve::KERNEL, &renamed, "is weights");
+    refused(&solve::KERNEL, &[("= window[k]", "= vec4f(f32(k))")], "window is never used");
+    refused(&binomial::KERNEL, &[("<storage, read> gray", "<storage, read_write> gray")], "binding");
+    refused(&binomial::KERNEL, &[("@binding(2)", "@binding(3)")], "expected smooth_gray at 2");
+    refused(
+        &binomial::KERNEL,
+        &[
+            ("@binding(1)", "@binding(2)"),
+            ("@binding(2) var<storage, read_write>", "@binding(1) var<storage, read_write>"),
+        ],
+        "expected gray at 1",
+    );
+}
+
+#[test]
+fn workgroups_and_loops_without_a_bound_are_refused() {
+    refused(
+        &expansion_x::KERNEL,
+        &[("@workgroup_size(16, 4)", "@workgroup_size(16, 32)")],
+        "workgroup is 16×32×1",
+    );
+    refused(
+        &binomial::KERNEL,
+        &[("@workgroup_size(64, 1)", "@workgroup_size(16, 2, 2)")],
+        "workgroup is 16×2×2",
+    );
+    let open = [("min((2u * params.radius + 4u) / 4u, MAX_STEPS)", "(2u * params.radius + 4u) / 4u")];
+    refused(&window_y::KERNEL, &open, "no stated bound");
+    refused(
+        &binomial::KERNEL,
+        &[("var above", "loop { if x0 == y0 { break; } } var above")],
+        "no stated bound",
+    );
+    refused(&area::KERNEL, &[("min(u32(x.y), MAX_COVER)", "u32(x.y)")], "no stated bound");
+}
+
+#[test]
+fn a_shader_without_its_entry_or_its_span_is_refused() {
+    refused(&binomial::KERNEL, &[("fn main(", "fn start(")], "entry point is start");
+    refused(&upsample::KERNEL, &[("const SPAN = vec2u(1u, 1u);", "")], "SPAN is missing");
+    refused(&upsample::KERNEL, &[("y.y,\n    );", "y.y\n    )")], "upsample");
+}
