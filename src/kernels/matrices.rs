@@ -74,29 +74,29 @@ fn reference(
 }
 
 #[inline(always)]
-fn fours(values: &[f32]) -> &[[f32; 4]] {
+pub(super) fn fours(values: &[f32]) -> &[[f32; 4]] {
     values.as_chunks().0
 }
 
 #[inline(always)]
-fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
+pub(super) fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
     let turned = Mat4::from_cols(a, b, c, d).transpose();
     [turned.x_axis, turned.y_axis, turned.z_axis, turned.w_axis]
 }
 
 /// The expansions of four pixels.
-struct Expansions {
+pub(super) struct Expansions {
     /// b_x, b_y, A_xx, A_yy, each of four pixels.
-    quad: [Vec4; 4],
+    pub(super) quad: [Vec4; 4],
     /// 2 A_xy.
-    cross_term: Vec4,
+    pub(super) cross_term: Vec4,
 }
 
 /// Of four pixels, G = AᵀA and h = AᵀΔb with Δb = −½ (b2 − b1) + A d and A the mean of both: channels xx, xy, yy, x, y.
 ///
 /// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
 #[inline(always)]
-fn equations_of(first: &Expansions, second: &(Expansions, BVec4A), d: [Vec4; 2], weight: Vec4) -> [Vec4; 5] {
+pub(super) fn equations_of(first: &Expansions, second: &(Expansions, BVec4A), d: [Vec4; 2], weight: Vec4) -> [Vec4; 5] {
     let (second, inside) = second;
     let or = |both: Vec4, alone: Vec4| Vec4::select(*inside, both, alone);
     let half = |c: usize| or(0.5 * (first.quad[c] - second.quad[c]), 0.5 * first.quad[c]);
@@ -154,7 +154,7 @@ impl Second<'_> {
 
 /// How much pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
 #[inline(always)]
-fn border_weight(i: usize, n: usize) -> f32 {
+pub(super) fn border_weight(i: usize, n: usize) -> f32 {
     let step = |distance: usize| match distance {
         0 | 1 => 0.14,
         2..=4 => 0.4472,
