@@ -3,7 +3,7 @@
 use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Window};
 use crate::flow::levels::Level;
-use crate::kernels::{area, matrices, solve, tables, upsample, window_y};
+use crate::kernels::{area, certain_matrices, matrices, solve, tables, upsample, window_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers of this part of the plan.
@@ -161,13 +161,30 @@ impl Motion {
     ) {
         let (width, height) = (level.size.width, level.size.height);
         let five = Shape::planar(level.size, 5);
-        steps.push(Step::new(
-            &matrices::KERNEL,
-            label.clone(),
-            matrices::Params { width, height },
-            &[first.quad, first.cross_term, second.quad, second.cross_term, from],
-            &[(self.equations, five)],
-        ));
+        steps.push(match (first.certainty, second.certainty) {
+            (Some(certainty_0), Some(certainty_1)) => Step::new(
+                &certain_matrices::KERNEL,
+                label.clone(),
+                certain_matrices::Params { width, height },
+                &[
+                    first.quad,
+                    first.cross_term,
+                    certainty_0,
+                    second.quad,
+                    second.cross_term,
+                    certainty_1,
+                    from,
+                ],
+                &[(self.equations, five)],
+            ),
+            _ => Step::new(
+                &matrices::KERNEL,
+                label.clone(),
+                matrices::Params { width, height },
+                &[first.quad, first.cross_term, second.quad, second.cross_term, from],
+                &[(self.equations, five)],
+            ),
+        });
         steps.push(Step::new(
             &window_y::KERNEL,
             label.clone(),
