@@ -72,7 +72,8 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
     );
     let m = model(Expansion(quad_0[y * stride + x], cross_term), second, inside, d);
     let border = border_weight(x, params.width) * border_weight(y, params.height);
-    let weight = certainty * select(1.0, sum, inside);
+    // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
+    let weight = certainty * select(certainty, sum, inside);
     let w = border * m.a;
     let z = border * m.delta_b;
     let g = weight * vec3f(w.x * w.x + w.y * w.y, (w.x + w.z) * w.y, w.z * w.z + w.y * w.y);

@@ -1,7 +1,8 @@
 //! Each pixel's normal equations for its displacement, weighted by how certain the expansions of both frames are.
 //!
 //! As [`super::matrices`], with the equations weighted by the certainty of the first frame's pixel times that of the place
-//! in the second frame; where the second frame has no pixel there, by the first's alone. The second frame is read by
+//! in the second frame. Where the second frame has no pixel there, that counts as certain as the first's: equations of
+//! inside and outside then keep their proportion when all certainty is halved. The second frame is read by
 //! normalised interpolation, each of the four pixels around a place by its bilinear weight times its certainty, so that
 //! those without an expansion do not draw it towards zero.
 //!
@@ -92,7 +93,8 @@ fn reference(
                         cross_term: Vec4::from_array(cross_term_0[four]),
                     };
                     let border = border_y * Vec4::from_array(fours(band.scratch)[four]);
-                    let certainty = Vec4::from_array(certainty_0[four]) * certainty_1;
+                    let certainty_0 = Vec4::from_array(certainty_0[four]);
+                let certainty = certainty_0 * Vec4::select(second.1, certainty_1, certainty_0);
                     let known = certainty.cmpgt(Vec4::splat(LEAST_CERTAINTY));
                     for (channel, values) in equations_of(&first, &second, d, border).into_iter().enumerate()
                     {
@@ -118,7 +120,7 @@ struct Second<'a> {
 impl Second<'_> {
     /// The expansions at four places, at which of them there are four pixels around the place, and how certain they are.
     ///
-    /// Elsewhere the expansion is numbers without meaning and the certainty 1.
+    /// Elsewhere they are numbers without meaning.
     #[inline(always)]
     fn at(&self, x: Vec4, y: Vec4) -> ((Expansions, BVec4A), Vec4) {
         let within = |at: Vec4, n: usize| at.cmpge(Vec4::ZERO) & at.cmplt(Vec4::splat((n - 1) as f32));
@@ -145,7 +147,7 @@ impl Second<'_> {
             certainties[i] = sum;
         }
         let expansions = Expansions { quad: transpose(quads), cross_term: cross_terms };
-        ((expansions, inside), Vec4::select(inside, certainties, Vec4::ONE))
+        ((expansions, inside), certainties)
     }
 }
 
