@@ -145,6 +145,7 @@ fn reference(
 /// Elimination without square roots (LDLᵀ). Rounding is not worse for coordinates in pixels than for scaled ones: scaling
 /// an unknown scales its row, its column and its pivot alike.
 #[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "rows and columns of a matrix, numbered as in the textbook")]
 fn solve(p: &Params, sum: impl Fn(usize) -> Vec4) -> ([Vec4; 5], Vec4) {
     let mut normal = [[Vec4::ZERO; 6]; 6];
     let mut right = [Vec4::ZERO; 6];
