@@ -99,9 +99,11 @@ fn certainty_of_one_changes_nothing() {
             flow_on_cpu(&config.plan(SIZE, PixelFormat::Gray8).expect("a legal configuration"), &frames)
         });
         let difference = largest_difference(&without, &with);
-        println!("radius {poly_n}, sigma {poly_sigma}: {difference:e} px");
-        // Rounding of the expansion, some 10⁻⁴ of a gray level, through two levels of three iterations.
-        assert!(difference < 2e-3, "radius {poly_n}, sigma {poly_sigma}: {difference} px");
+        let largest = without.iter().fold(0.0f32, |largest, d| largest.max(d.abs()));
+        println!("radius {poly_n}, sigma {poly_sigma}: {difference:e} of {largest:e} px");
+        // Rounding of the expansion, some 10⁻⁴ of a gray level, through two levels of three iterations. Of
+        // the largest flow, for that of the widest neighbourhoods is small.
+        assert!(difference < 1e-3 * largest, "radius {poly_n}, sigma {poly_sigma}: {difference} px");
     }
 }
 
