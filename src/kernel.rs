@@ -67,15 +67,30 @@ pub struct Case {
     pub extent: Size,
 }
 
-/// How far two results may lie apart: `|a − b| ≤ absolute + relative · |reference|`.
+/// How far two results may lie apart: `|a − b| ≤ absolute + relative · |reference| + of_largest · largest`.
+///
+/// `largest` is the largest magnitude in the kernel's first input and in the reference's output: sums that cancel keep
+/// the roundings of their terms.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// The absolute part.
     pub absolute: f32,
     /// The part that grows with the reference's magnitude.
     pub relative: f32,
+    /// The part that grows with the largest value that is about.
+    pub of_largest: f32,
     /// Why this much and not less.
     pub reason: &'static str,
+}
+
+impl Tolerance {
+    /// The tolerance for one run, with its share of the largest value made part of the absolute one.
+    pub fn over(self, first_input: &[f32], expected: &[f32]) -> Self {
+        let values =
+            first_input.iter().chain(expected).map(|value| value.abs()).filter(|value| value.is_finite());
+        let largest = if self.of_largest > 0.0 { values.fold(0.0, f32::max) } else { 0.0 };
+        Self { absolute: self.absolute + self.of_largest * largest, of_largest: 0.0, ..self }
+    }
 }
 
 /// Types that a uniform struct may have as fields, with their names in WGSL.

@@ -12,7 +12,8 @@ fn deciles(flow: Farneback, frames: &[Image; 2], scene: &Scene) -> [f64; 10] {
     let config = Config { flow: Farneback { confidence: true, ..flow }, ..Config::default() };
     let mut engine = Engine::new(Backend::Cpu, SIZE, &config).expect("the configuration is legal");
     engine.process(&frames[0].frame().expect("whole")).expect("the CPU computes");
-    let output = engine.process(&frames[1].frame().expect("whole")).expect("the CPU computes").expect("a pair");
+    let output =
+        engine.process(&frames[1].frame().expect("whole")).expect("the CPU computes").expect("a pair");
     let error = endpoint_error(&scene.flow(0), output.flow.expect("asked for")).expect("one size").data;
     let confidence = &output.confidence.expect("asked for").data;
     assert!(confidence.iter().all(|c| (0.0..=1.0).contains(c)));
@@ -37,7 +38,10 @@ fn assert_falls(name: &str, deciles: [f64; 10]) {
     const FLOOR_PX: f64 = 0.03;
     let falls = deciles.windows(2).all(|pair| pair[1] < pair[0].max(FLOOR_PX));
     assert!(falls, "{name}: {deciles:?}");
-    assert!(deciles[9] < 0.1 * deciles[0], "{name}: the best tenth is hardly better than the worst: {deciles:?}");
+    assert!(
+        deciles[9] < 0.1 * deciles[0],
+        "{name}: the best tenth is hardly better than the worst: {deciles:?}"
+    );
 }
 
 #[test]

@@ -7,8 +7,9 @@ use common::sides::compare_sides;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, area, binomial, compare, confidence, expansion_x, expansion_y, luma, matrices, resample_x,
-    resample_y, residual, solve, upsample, window_y,
+    ALL, area, binomial, certain_expansion_x, certain_expansion_y, certain_matrices, compare, confidence,
+    expansion_x, expansion_y, luma, matrices, resample_x, resample_y, residual, solve, upsample, weigh,
+    window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -59,6 +60,11 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&residual::KERNEL, "select(0.0, certainty[i], second.inside)", "certainty[i]"),
     (&residual::KERNEL, "second, vec2f());", "second, d);"),
     (&confidence::KERNEL, "(g_xx + g_yy) - sqrt", "(g_xx + g_yy) + sqrt"),
+    (&weigh::KERNEL, "min(c, vec4f(1.0))", "c"),
+    (&weigh::KERNEL, "(c > vec4f())", "(c >= vec4f(-1.0))"),
+    (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
+    (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
+    (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
     (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
 ];
 

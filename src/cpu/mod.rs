@@ -4,6 +4,8 @@ use crate::plan::{BufId, Content, Plan, Step};
 
 /// Kernels have at most this many input buffers: eight storage buffers a stage, one of them an output.
 const MAX_INPUTS: usize = 7;
+/// And at most this many outputs.
+const MAX_OUTPUTS: usize = 3;
 
 /// A plan's buffers in main memory.
 pub struct CpuExecutor {
@@ -33,7 +35,7 @@ impl CpuExecutor {
     /// Runs one step of the plan that this executor was made for.
     pub fn run(&mut self, step: &Step) {
         // A plan's check rules out that an output is an input, so outputs can be taken out while inputs are borrowed.
-        let mut taken = [Vec::new(), Vec::new()];
+        let mut taken = [const { Vec::new() }; MAX_OUTPUTS];
         for (taken, (output, _)) in taken.iter_mut().zip(&step.outputs) {
             *taken = std::mem::take(&mut self.bufs[output.index()]);
         }

@@ -30,7 +30,7 @@ kernel!(
     cases: cases,
     tolerance: Tolerance {
         absolute: 40.0 * 16.0 * f32::EPSILON,
-        relative: 8.0 * f32::EPSILON,
+        relative: 8.0 * f32::EPSILON, of_largest: 0.0,
         reason: "a mean of displacements up to 40 px of either sign, fused or not",
     },
 );

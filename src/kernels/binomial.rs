@@ -21,7 +21,7 @@ kernel!(
     cases: |size| gray_cases(size, Fill::ALL, bytemuck::bytes_of(&Params::new(size)), &[], &[size.stride()], size),
     tolerance: Tolerance {
         absolute: 0.0,
-        relative: 4.0 * f32::EPSILON,
+        relative: 4.0 * f32::EPSILON, of_largest: 0.0,
         reason: "eight additions of positive numbers in another order; whole numbers below 2²⁰ are exact",
     },
 );

@@ -38,7 +38,7 @@ pub struct Breach {
 
 /// Holds `found` against `expected`, value by value.
 ///
-/// Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A
+/// The tolerance is taken as it stands: see [`Tolerance::over`] for its share of the largest value. Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A
 /// [`POISON`] agrees with nothing, and a value that only one side has is beyond every bound.
 pub fn compare(expected: &[f32], found: &[f32], tolerance: Tolerance) -> Difference {
     let count = expected.len().max(found.len());
@@ -86,7 +86,7 @@ fn difference(expected: f32, found: f32) -> f32 {
 mod tests {
     use super::*;
 
-    const BOUND: Tolerance = Tolerance { absolute: 0.5, relative: 0.1, reason: "made up" };
+    const BOUND: Tolerance = Tolerance { absolute: 0.5, relative: 0.1, of_largest: 0.0, reason: "made up" };
 
     fn breaches(expected: &[f32], found: &[f32]) -> usize {
         compare(expected, found, BOUND).breaches

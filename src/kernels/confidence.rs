@@ -24,7 +24,7 @@ kernel!(
     cases: cases,
     tolerance: Tolerance {
         absolute: 2e-3,
-        relative: 0.0,
+        relative: 0.0, of_largest: 0.0,
         reason: "the least eigenvalue is a difference: with eigenvalues in a ratio of some hundred it keeps four digits, \
                  and where all are 0 its rounding stands beside 10⁻⁶",
     },

@@ -26,10 +26,11 @@ kernel!(
     reference(Params; level, applicability) -> (moments),
     cases: cases,
     tolerance: Tolerance {
-        absolute: 0.5,
+        absolute: 0.0,
         relative: 1e-5,
-        reason: "eleven products of up to 65535 · y² g, fused or not; Σ y g f cancels, so the absolute part is 2⁻²³ of \
-                 the products' sum",
+        of_largest: 8e-6,
+        reason: "eleven products of the brightness with y² g, fused or not; Σ y g f cancels, so what is left has the \
+                 roundings of the largest",
     },
 );
 

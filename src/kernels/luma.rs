@@ -22,7 +22,7 @@ kernel!(
     "luma" + ["image"],
     reference(Params; frame) -> (gray),
     cases: cases,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, reason: "whole numbers below 2¹⁶ on both sides" },
+    tolerance: Tolerance { absolute: 0.0, relative: 0.0, of_largest: 0.0, reason: "whole numbers below 2¹⁶ on both sides" },
 );
 
 impl Params {

@@ -27,14 +27,18 @@ macro_rules! registry {
 registry!(
     ($)
     luma,
+    weigh,
     binomial,
     resample_y,
     resample_x,
     expansion_y,
     expansion_x,
+    certain_expansion_y,
+    certain_expansion_x,
     upsample,
     area,
     matrices,
+    certain_matrices,
     window_y,
     solve,
     residual,

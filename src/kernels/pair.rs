@@ -18,6 +18,8 @@ pub(super) struct Pair<'a> {
     pub(super) cross_term_0: &'a [f32],
     pub(super) quad_1: &'a [[f32; 4]],
     pub(super) cross_term_1: &'a [f32],
+    /// How certain the second expansion is; none for equally everywhere.
+    pub(super) certainty_1: Option<&'a [f32]>,
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) stride: usize,
@@ -34,6 +36,8 @@ pub(super) struct Model {
     pub(super) b_y: Block,
     /// 1 where the second frame has an expansion, else 0.
     pub(super) inside: Block,
+    /// How certain the second frame's expansion is there.
+    pub(super) certainty_1: Block,
 }
 
 /// Where a block of pixels is read: the pixel above and to the left, and how far from it.
@@ -50,12 +54,23 @@ impl Pair<'_> {
     pub(super) fn model(&self, x0: usize, y: usize, u: &[f32], v: &[f32]) -> Model {
         let count = u.len();
         let places = self.places(x0, y, u, v);
-        let (second, cross_terms) = self.second(&places, count);
+        let (second, cross_terms, certainty_1) = match self.certainty_1 {
+            None => self.second(&places, count, |_, weights| weights),
+            Some(certainty) => self
+                .second(&places, count, |at, weights| std::array::from_fn(|i| weights[i] * certainty[at[i]])),
+        };
         let at = y * self.stride + x0;
         let (quad_0, cross_term_0) = (&self.quad_0[at..][..count], &self.cross_term_0[at..][..count]);
         let zero = [0.0; BLOCK];
-        let mut model =
-            Model { a_xx: zero, a_xy: zero, a_yy: zero, b_x: zero, b_y: zero, inside: places.inside };
+        let mut model = Model {
+            a_xx: zero,
+            a_xy: zero,
+            a_yy: zero,
+            b_x: zero,
+            b_y: zero,
+            inside: places.inside,
+            certainty_1,
+        };
         for i in 0..count {
             let (q, p) = (quad_0[i], second[i]);
             let inside = places.inside[i] > 0.0;
@@ -91,27 +106,41 @@ impl Pair<'_> {
         places
     }
 
-    /// The second frame's expansions there. Where there are not four pixels around a place they are without meaning.
+    /// The second frame's expansions there, and the sums of the weights by which they are means of the four pixels around.
+    /// Where there are not four pixels around a place they are without meaning.
     #[inline(always)]
-    fn second(&self, places: &Places, count: usize) -> ([[f32; 4]; BLOCK], Block) {
+    fn second(
+        &self,
+        places: &Places,
+        count: usize,
+        weigh: impl Fn([usize; 4], [f32; 4]) -> [f32; 4],
+    ) -> ([[f32; 4]; BLOCK], Block, Block) {
         let mut quads = [[0.0; 4]; BLOCK];
         let mut cross_terms = [0.0; BLOCK];
+        let mut sums = [1.0; BLOCK];
         // A picture one pixel wide or high has no neighbours to read, and nothing is inside it.
         let right = usize::from(self.width > 1);
         let below = if self.height > 1 { self.stride } else { 0 };
         for i in 0..count {
             let first = places.first[i] as usize;
             let (fx, fy) = (places.fx[i], places.fy[i]);
-            let [a, b, c, d] = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-            let (top, bottom) =
-                (&self.quad_1[first..=first + right], &self.quad_1[first + below..=first + below + right]);
+            let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
+            let at = [first, first + right, first + below, first + below + right];
+            let [a, b, c, d] = weigh(at, weights);
+            let (top, bottom) = (&self.quad_1[at[0]..=at[1]], &self.quad_1[at[2]..=at[3]]);
             let (q_a, q_b, q_c, q_d) = (top[0], top[right], bottom[0], bottom[right]);
             quads[i] = std::array::from_fn(|n| a * q_a[n] + b * q_b[n] + c * q_c[n] + d * q_d[n]);
-            let t = &self.cross_term_1;
-            let (top, bottom) = (&t[first..=first + right], &t[first + below..=first + below + right]);
+            let (top, bottom) = (&self.cross_term_1[at[0]..=at[1]], &self.cross_term_1[at[2]..=at[3]]);
             cross_terms[i] = a * top[0] + b * top[right] + c * bottom[0] + d * bottom[right];
+            if self.certainty_1.is_some() {
+                // A mean by weight and certainty: pixels without an expansion do not draw it towards nothing.
+                let sum = a + b + c + d;
+                quads[i] = quads[i].map(|value| value / sum);
+                cross_terms[i] /= sum;
+                sums[i] = sum;
+            }
         }
-        (quads, cross_terms)
+        (quads, cross_terms, sums)
     }
 }
 

@@ -27,7 +27,7 @@ kernel!(
     cases: cases,
     tolerance: Tolerance {
         absolute: 0.0,
-        relative: 32.0 * f32::EPSILON,
+        relative: 32.0 * f32::EPSILON, of_largest: 0.0,
         reason: "sums of positive products, at most some thirty terms of weight, fused or not",
     },
 );

@@ -12,7 +12,7 @@ use crate::frame::Size;
 /// Below this many values a piece of work stays on one core: handing it over would cost more.
 const SMALLEST_SHARE: usize = 1 << 15;
 
-/// The output rows `y0 .. y0 + rows` of up to two buffers, and room to work in.
+/// The output rows `y0 .. y0 + rows` of up to three buffers, and room to work in.
 pub(crate) struct Band<'a> {
     /// The first row's number.
     pub(crate) y0: usize,
@@ -20,24 +20,28 @@ pub(crate) struct Band<'a> {
     pub(crate) out: &'a mut [f32],
     /// Rows of the second output, if there is one.
     pub(crate) second: &'a mut [f32],
+    /// Rows of the third output, if there is one.
+    pub(crate) third: &'a mut [f32],
     /// As many values as were asked for, with anything in them.
     pub(crate) scratch: &'a mut [f32],
 }
 
 /// How [`bands`] splits its outputs.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Split {
     /// Values in a row of the first output, all channels together.
     pub(crate) row: usize,
     /// The same of the second output; 0 where there is none.
     pub(crate) second_row: usize,
+    /// The same of the third output.
+    pub(crate) third_row: usize,
     /// Values of scratch that a band needs.
     pub(crate) scratch: usize,
 }
 
 impl Split {
     pub(crate) fn rows_of(row: usize) -> Self {
-        Self { row, second_row: 0, scratch: 0 }
+        Self { row, ..Self::default() }
     }
 }
 
@@ -45,24 +49,30 @@ impl Split {
 ///
 /// `f` and what it calls should be `#[inline(always)]`, or they are compiled for the narrowest processor.
 pub(crate) fn bands<F: Fn(Band<'_>) + Sync>(out: &mut [f32], second: &mut [f32], split: Split, f: F) {
-    halve(0, out, second, split, &f);
+    halve(0, [out, second, &mut []], split, &f);
 }
 
-fn halve<F: Fn(Band<'_>) + Sync>(y0: usize, out: &mut [f32], second: &mut [f32], split: Split, f: &F) {
+/// [`bands`] with a third output.
+pub(crate) fn bands_of_three<F: Fn(Band<'_>) + Sync>(outputs: [&mut [f32]; 3], split: Split, f: F) {
+    halve(0, outputs, split, &f);
+}
+
+fn halve<F: Fn(Band<'_>) + Sync>(y0: usize, [out, second, third]: [&mut [f32]; 3], split: Split, f: &F) {
     let rows = out.len() / split.row;
     if rows < 16 || out.len() < SMALLEST_SHARE {
-        return vectorised(y0, out, second, split.scratch, f);
+        return vectorised(y0, [out, second, third], split.scratch, f);
     }
     let half = rows / 2;
     let (out_above, out_below) = out.split_at_mut(half * split.row);
     let (second_above, second_below) = second.split_at_mut(half * split.second_row);
+    let (third_above, third_below) = third.split_at_mut(half * split.third_row);
     rayon::join(
-        || halve(y0, out_above, second_above, split, f),
-        || halve(y0 + half, out_below, second_below, split, f),
+        || halve(y0, [out_above, second_above, third_above], split, f),
+        || halve(y0 + half, [out_below, second_below, third_below], split, f),
     );
 }
 
-fn vectorised<F: Fn(Band<'_>)>(y0: usize, out: &mut [f32], second: &mut [f32], scratch: usize, f: &F) {
+fn vectorised<F: Fn(Band<'_>)>(y0: usize, [out, second, third]: [&mut [f32]; 3], scratch: usize, f: &F) {
     struct Work<'a, F>(&'a F, Band<'a>);
 
     impl<F: Fn(Band<'_>)> NullaryFnOnce for Work<'_, F> {
@@ -81,7 +91,7 @@ fn vectorised<F: Fn(Band<'_>)>(y0: usize, out: &mut [f32], second: &mut [f32], s
         if room.len() < scratch {
             room.resize(scratch, 0.0);
         }
-        let band = Band { y0, out, second, scratch: &mut room[..scratch] };
+        let band = Band { y0, out, second, third, scratch: &mut room[..scratch] };
         Arch::new().dispatch(Work(f, band));
     });
 }

@@ -27,7 +27,7 @@ kernel!(
     cases: cases,
     tolerance: Tolerance {
         absolute: 2e-4,
-        relative: 2e-4,
+        relative: 2e-4, of_largest: 0.0,
         reason: "the determinant of averaged equations cancels: with eigenvalues in a ratio of up to some hundred, \
                  some hundred roundings of each product",
     },

@@ -28,7 +28,7 @@ kernel!(
     cases: cases,
     tolerance: Tolerance {
         absolute: 40.0 * 16.0 * f32::EPSILON,
-        relative: 8.0 * f32::EPSILON,
+        relative: 8.0 * f32::EPSILON, of_largest: 0.0,
         reason: "two linear mixes of displacements up to 40 px of either sign, fused or not",
     },
 );

@@ -32,7 +32,7 @@ pub(crate) fn compare_sides(gpu: &Gpu, kernel: &Kernel) -> Result<Vec<Compared>>
             for ((name, expected), found) in kernel.outputs.iter().zip(&expected).zip(&found) {
                 compared.push(Compared {
                     what: format!("{} at {size}, {}: {name} of {}", kernel.name, case.name, case.extent),
-                    difference: compare(expected, found, kernel.tolerance),
+                    difference: compare(expected, found, kernel.tolerance.over(inputs[0], expected)),
                 });
             }
         }

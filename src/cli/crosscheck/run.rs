@@ -121,7 +121,8 @@ pub(super) fn run(
 }
 
 /// For figures alone.
-const ANY: Tolerance = Tolerance { absolute: f32::INFINITY, relative: 0.0, reason: "only the figures count" };
+const ANY: Tolerance =
+    Tolerance { absolute: f32::INFINITY, relative: 0.0, of_largest: 0.0, reason: "only the figures count" };
 
 impl Sides<'_> {
     fn step(&mut self, step: &Step, parity: usize, index: usize, report: &mut Report) -> Result<()> {
@@ -140,7 +141,7 @@ impl Sides<'_> {
         self.alone.run(parity, index)?;
         let name = format!("frame {parity}, {}", step.label);
         for (&(id, shape), &output) in step.outputs.iter().zip(step.kernel.outputs) {
-            let tolerance = self.tolerance(step);
+            let tolerance = self.tolerance(step, &self.cpu.buf(id)[..shape.len()]);
             let difference = self.difference(&self.corrected, id, shape, tolerance)?;
             report.steps.push(StepFigures::new(step, name.clone(), output, shape, tolerance, &difference));
             let alone = self.difference(&self.alone, id, shape, tolerance)?;
@@ -155,9 +156,9 @@ impl Sides<'_> {
         Ok(())
     }
 
-    fn tolerance(&self, step: &Step) -> Tolerance {
-        let Tolerance { absolute, relative, reason } = step.kernel.tolerance;
-        Tolerance { absolute: self.factor * absolute, relative: self.factor * relative, reason }
+    fn tolerance(&self, step: &Step, expected: &[f32]) -> Tolerance {
+        let own = step.kernel.tolerance.over(self.cpu.buf(step.inputs[0]), expected);
+        Tolerance { absolute: self.factor * own.absolute, relative: self.factor * own.relative, ..own }
     }
 
     fn difference(
@@ -181,7 +182,7 @@ impl StepFigures {
         within: Tolerance,
         found: &Difference,
     ) -> Self {
-        let Tolerance { absolute, relative, reason } = within;
+        let Tolerance { absolute, relative, reason, .. } = within;
         let worst = found.worst.map(|breach| {
             let [column, row, channel] = shape.place(breach.index);
             Worst { column, row, channel, cpu: breach.expected, gpu: breach.found, bound: breach.bound }

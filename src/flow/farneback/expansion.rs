@@ -1,6 +1,7 @@
 //! What is computed of one frame alone: its pyramid, and each level's polynomial expansion.
 
 use super::Farneback;
+use super::certain::Certain;
 use crate::flow::levels::Level;
 use crate::frame::{PixelFormat, Size};
 use crate::kernels::tables::{self, Applicability};
@@ -14,6 +15,8 @@ pub(super) struct Expansion {
     pub(super) quad: BufId,
     /// 2 A_xy of each pixel.
     pub(super) cross_term: BufId,
+    /// How certain it is, where frames come with a certainty.
+    pub(super) certainty: Option<BufId>,
 }
 
 /// The buffers of this part of the plan.
@@ -22,6 +25,8 @@ pub(super) struct Expansions {
     pub(super) frame: BufId,
     /// Of each level, finest first, for both parities.
     pub(super) levels: Vec<[Expansion; 2]>,
+    /// What a certainty adds.
+    pub(super) certain: Option<Certain>,
     size: Size,
     format: PixelFormat,
     radius: u32,
@@ -31,7 +36,8 @@ pub(super) struct Expansions {
     gray: BufId,
     columns: BufId,
     image: BufId,
-    moments: BufId,
+    /// Of the expansion without certainty.
+    moments: Option<BufId>,
     reductions: Vec<Reduction>,
 }
 
@@ -52,17 +58,22 @@ impl Expansions {
         levels: &[Level],
     ) -> Self {
         let applicability = tables::applicability(config.poly_n, config.poly_sigma);
-        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, parity: &str| Expansion {
-            quad: bufs.computed(format!("quad, level {k}, {parity} frames"), Shape::quads(level.size)),
-            cross_term: bufs
-                .computed(format!("cross term, level {k}, {parity} frames"), Shape::planar(level.size, 1)),
+        let certain = config.certainty.then(|| Certain::new(bufs, size, levels));
+        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, parity: usize| {
+            let frames = ["even frames", "odd frames"][parity];
+            Expansion {
+                quad: bufs.computed(format!("quad, level {k}, {frames}"), Shape::quads(level.size)),
+                cross_term: bufs
+                    .computed(format!("cross term, level {k}, {frames}"), Shape::planar(level.size, 1)),
+                certainty: certain.as_ref().map(|certain| certain.expansion(k, parity)),
+            }
         };
         Self {
             frame: bufs.input("frame", luma::row_words(size, format) * size.height as usize),
             levels: levels
                 .iter()
                 .enumerate()
-                .map(|(k, level)| ["even", "odd"].map(|parity| expansion(bufs, k, level, parity)))
+                .map(|(k, level)| [0, 1].map(|parity| expansion(bufs, k, level, parity)))
                 .collect(),
             size,
             format,
@@ -82,7 +93,8 @@ impl Expansions {
             gray: bufs.computed("gray", Shape::planar(size, 1)),
             columns: bufs.computed("smoothed columns", Shape::planar(size, 1)),
             image: bufs.computed("level's image", Shape::planar(size, 1)),
-            moments: bufs.computed("moments", Shape::planar(size, 3)),
+            moments: certain.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
+            certain,
             reductions: (levels.iter().enumerate().skip(1))
                 .map(|(k, &level)| Reduction {
                     level,
@@ -100,39 +112,48 @@ impl Expansions {
     /// The steps for a frame of this parity.
     pub(super) fn steps(&self, parity: usize) -> Vec<Step> {
         let gray = Shape::planar(self.size, 1);
-        let mut steps = vec![
-            Step::new(
-                &luma::KERNEL,
-                "frame",
-                luma::Params::new(self.size, self.format),
-                &[self.frame],
-                &[(self.gray, gray)],
-            ),
-            Step::new(
+        let mut steps = vec![Step::new(
+            &luma::KERNEL,
+            "frame",
+            luma::Params::new(self.size, self.format),
+            &[self.frame],
+            &[(self.gray, gray)],
+        )];
+        let pictures = match &self.certain {
+            None => vec![[self.gray, self.image]],
+            Some(certain) => {
+                steps.push(certain.weigh(self.gray, self.size));
+                certain.pictures(self.image)
+            }
+        };
+        for &[full, level] in &pictures {
+            steps.push(Step::new(
                 &binomial::KERNEL,
                 "level 0",
                 binomial::Params::new(self.size),
-                &[self.gray],
-                &[(self.image, gray)],
-            ),
-        ];
+                &[full],
+                &[(level, gray)],
+            ));
+        }
         self.expand(&mut steps, 0, self.size, parity);
         for (i, reduction) in self.reductions.iter().enumerate() {
-            self.reduce(&mut steps, i + 1, reduction);
+            for &picture in &pictures {
+                self.reduce(&mut steps, i + 1, reduction, picture);
+            }
             self.expand(&mut steps, i + 1, reduction.level.size, parity);
         }
         steps
     }
 
-    /// The full picture, smoothed and read at a level's pixels.
-    fn reduce(&self, steps: &mut Vec<Step>, k: usize, reduction: &Reduction) {
+    /// A full picture, smoothed and read at a level's pixels.
+    fn reduce(&self, steps: &mut Vec<Step>, k: usize, reduction: &Reduction, [full, image]: [BufId; 2]) {
         let Size { width, height } = reduction.level.size;
         let taps = reduction.level.taps;
         steps.push(Step::new(
             &resample_y::KERNEL,
             format!("level {k}"),
             resample_y::Params { width: self.size.width, height, in_height: self.size.height, taps },
-            &[self.gray, reduction.gauss, reduction.place_y],
+            &[full, reduction.gauss, reduction.place_y],
             &[(self.columns, Shape::planar(Size::new(self.size.width, height), 1))],
         ));
         steps.push(Step::new(
@@ -140,25 +161,30 @@ impl Expansions {
             format!("level {k}"),
             resample_x::Params { width, height, in_width: self.size.width, taps },
             &[self.columns, reduction.gauss, reduction.place_x],
-            &[(self.image, Shape::planar(reduction.level.size, 1))],
+            &[(image, Shape::planar(reduction.level.size, 1))],
         ));
     }
 
     /// The polynomial expansion of a level's image.
     fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, parity: usize) {
-        let Expansion { quad, cross_term } = self.levels[k][parity];
+        let Expansion { quad, cross_term, certainty } = self.levels[k][parity];
+        if let (Some(certain), Some(certainty)) = (&self.certain, certainty) {
+            let inputs = [self.image, self.weights_y, self.weights_x];
+            steps.extend(certain.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));
+        }
+        let Some(moments) = self.moments else { return };
         steps.push(Step::new(
             &expansion_y::KERNEL,
             format!("level {k}"),
             expansion_y::Params { width: size.width, height: size.height, radius: self.radius },
             &[self.image, self.weights_y],
-            &[(self.moments, Shape::planar(size, 3))],
+            &[(moments, Shape::planar(size, 3))],
         ));
         steps.push(Step::new(
             &expansion_x::KERNEL,
             format!("level {k}"),
             expansion_x::Params::new(size, self.radius, &self.applicability),
-            &[self.moments, self.weights_x],
+            &[moments, self.weights_x],
             &[(quad, Shape::quads(size)), (cross_term, Shape::planar(size, 1))],
         ));
     }

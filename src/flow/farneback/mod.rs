@@ -1,5 +1,6 @@
 //! Pyramidal Farnebäck flow, with OpenCV's semantics to the last border pixel.
 
+mod certain;
 mod expansion;
 mod motion;
 
@@ -42,7 +43,8 @@ pub struct Farneback {
     pub window: Window,
     /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
     pub initial_flow: bool,
-    /// Whether each frame comes with a certainty of its pixels.
+    /// Whether each frame comes with a certainty of its pixels, a plane of values from 0 to 1. What lies outside that range
+    /// is held within it, and what is not a number counts as 0.
     pub certainty: bool,
     /// Whether a confidence is computed beside the flow.
     pub confidence: bool,
@@ -123,7 +125,7 @@ impl Farneback {
             ingest: [0, 1].map(|parity| expansions.steps(parity)),
             pair: [0, 1].map(|parity| motion.steps(&expansions, flow, parity)),
             frame: expansions.frame,
-            certainty: None,
+            certainty: expansions.certain.as_ref().map(|certain| certain.input),
             flow,
             initial_flow: self.initial_flow,
             confidence: motion.confidence(),

@@ -3,7 +3,9 @@
 use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Window};
 use crate::flow::levels::Level;
-use crate::kernels::{area, confidence, matrices, residual, solve, tables, upsample, window_y};
+use crate::kernels::{
+    area, certain_matrices, confidence, matrices, residual, solve, tables, upsample, window_y,
+};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers of this part of the plan.
@@ -30,7 +32,8 @@ struct MotionLevel {
 
 /// The buffers of the confidence.
 struct Trust {
-    certainty: BufId,
+    /// Where frames come without a certainty, one that is the same everywhere.
+    certainty: Option<BufId>,
     confidence: BufId,
 }
 
@@ -83,7 +86,8 @@ impl Motion {
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
             start,
             trust: config.confidence.then(|| Trust {
-                certainty: bufs.constant("certainty", vec![1.0; Shape::planar(finest, 1).len()]),
+                certainty: (!config.certainty)
+                    .then(|| bufs.constant("equal certainty", vec![1.0; Shape::planar(finest, 1).len()])),
                 confidence: bufs.computed("confidence", Shape::planar(finest, 1)),
             }),
         }
@@ -180,13 +184,30 @@ impl Motion {
     ) {
         let (width, height) = (level.size.width, level.size.height);
         let five = Shape::planar(level.size, 5);
-        steps.push(Step::new(
-            &matrices::KERNEL,
-            label.clone(),
-            matrices::Params { width, height },
-            &[first.quad, first.cross_term, second.quad, second.cross_term, from],
-            &[(self.equations, five)],
-        ));
+        steps.push(match (first.certainty, second.certainty) {
+            (Some(certainty_0), Some(certainty_1)) => Step::new(
+                &certain_matrices::KERNEL,
+                label.clone(),
+                certain_matrices::Params { width, height },
+                &[
+                    first.quad,
+                    first.cross_term,
+                    certainty_0,
+                    second.quad,
+                    second.cross_term,
+                    certainty_1,
+                    from,
+                ],
+                &[(self.equations, five)],
+            ),
+            _ => Step::new(
+                &matrices::KERNEL,
+                label.clone(),
+                matrices::Params { width, height },
+                &[first.quad, first.cross_term, second.quad, second.cross_term, from],
+                &[(self.equations, five)],
+            ),
+        });
         steps.push(Step::new(
             &window_y::KERNEL,
             label.clone(),
@@ -214,11 +235,13 @@ impl Motion {
     ) {
         let (width, height) = (level.size.width, level.size.height);
         let five = Shape::planar(level.size, 5);
+        let certainty =
+            trust.certainty.or(first.certainty).unwrap_or_else(|| unreachable!("there is one of the two"));
         steps.push(Step::new(
             &residual::KERNEL,
             "confidence",
             residual::Params { width, height },
-            &[first.quad, first.cross_term, second.quad, second.cross_term, trust.certainty, flow],
+            &[first.quad, first.cross_term, second.quad, second.cross_term, certainty, flow],
             &[(self.equations, five)],
         ));
         steps.push(Step::new(
