@@ -11,6 +11,9 @@ struct Params {
 @group(0) @binding(1) var<storage, read> frame: array<u32>;
 @group(0) @binding(2) var<storage, read_write> gray: array<vec4f>;
 
+// White is 255 in every format: the equations' constants are in those gray levels.
+const WIDE = 1.0 / 257.0;
+
 const SPAN = vec2u(4u, 1u);
 
 @compute @workgroup_size(64, 1)
@@ -42,7 +45,7 @@ fn byte(offset: u32) -> u32 {
 fn pixel(x: u32, y: u32) -> f32 {
     let row = 4u * params.row_words * y;
     switch params.format {
-        case 1u: { return f32(byte(row + 2u * x) + 256u * byte(row + 2u * x + 1u)); }
+        case 1u: { return f32(byte(row + 2u * x) + 256u * byte(row + 2u * x + 1u)) * WIDE; }
         case 2u: { return luma(row + 3u * x); }
         default: { return luma(row + 4u * x); }
     }

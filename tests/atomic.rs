@@ -133,3 +133,34 @@ fn many_writers_of_one_file_never_mix() {
     assert!(bytes.iter().all(|b| *b == bytes[0]));
     assert_eq!(names(folder.path()), ["a.bin"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_and_its_target_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+    fs::write(&file, "old").unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    write_bytes(&link, b"new").unwrap();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read(&file).unwrap(), b"new");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_to_and_stays_a_pipe() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe");
+    let Ok(status) = std::process::Command::new("mkfifo").arg(&pipe).status() else {
+        eprintln!("skipped: there is no mkfifo here");
+        return;
+    };
+    assert!(status.success());
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read(pipe).unwrap()
+    });
+    write_bytes(&pipe, b"through").unwrap();
+    assert_eq!(reader.join().unwrap(), b"through");
+    assert!(!fs::metadata(&pipe).unwrap().is_file());
+}

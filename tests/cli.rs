@@ -212,9 +212,9 @@ fn wide_and_coloured_pixels_are_read() {
     for kind in ["wide", "rgb"] {
         run(&folder, &["flow", &format!("{kind}0.png"), &format!("{kind}1.png"), "-o", "b.flo"]).well();
         let (gray, other) = (field(&folder, "gray.flo"), field(&folder, "b.flo"));
-        // Not the same: what keeps the equations solvable is an absolute number of gray levels.
+        // White is 255 in every format; a product with 1/257 may round.
         let error = viewsphere::eval::flow_error(&gray, &other, None).unwrap();
-        assert!(error.aee_px < 0.02, "{kind} {error:?}");
+        assert!(error.aee_px < 1e-4, "{kind} {error:?}");
     }
 }
 

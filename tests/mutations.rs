@@ -25,6 +25,7 @@ fn mutant(kernel: &Kernel, from: &str, to: &str) -> Kernel {
 const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&luma::KERNEL, "19235u", "19236u"),
     (&luma::KERNEL, " + 16384u", ""),
+    (&luma::KERNEL, "1.0 / 257.0", "1.0 / 256.0"),
     (&luma::KERNEL, "vec4u(0u, 8u, 16u, 24u)", "vec4u(24u, 16u, 8u, 0u)"),
     (&binomial::KERNEL, "reflect_101(x - 1, n)", "u32(max(x - 1, 0))"),
     (&binomial::KERNEL, "row(x0, i32(y0) - 1)", "row(x0, i32(y0))"),

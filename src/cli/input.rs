@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::frame::{Image, PixelFormat, Plane, Size, npy, picture};
+use crate::frame::{Image, PixelFormat, Plane, Size, check_writable, npy, picture};
 
 /// Checks that what `path` holds is as large as what `other` holds.
 pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) -> Result<()> {
@@ -13,12 +13,12 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
     Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
 }
 
-/// Checks that a folder is there or can be made, and makes nothing.
+/// Checks that a folder can be written into, or can be made, and leaves nothing behind.
 pub(super) fn folder(path: &Path) -> Result<()> {
     let there = path.ancestors().find(|folder| folder.exists());
     // An ancestor of no name is the working folder.
     let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    std::fs::read_dir(there).map(|_| ()).map_err(|source| Error::io(there, source))
+    check_writable(there)
 }
 
 /// Two pictures of one size and pixel format.

@@ -81,7 +81,7 @@ impl Frames {
         }
         let size = raw_size.ok_or_else(|| {
             let expected = "WIDTHxHEIGHT, because the stream does not begin with YUV4MPEG2";
-            Error::parameter("raw size", "missing", expected)
+            Error::parameter("size of raw frames on standard input", "missing", expected)
         })?;
         Ok(Self(Source::Raw(RawReader::new(whole, path, size)?)))
     }
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_stream_without_meaning_is_refused() {
         let text = stream(b"abcd", None).err().unwrap().to_string();
-        assert!(text.starts_with("raw size is missing"), "{text}");
+        assert!(text.starts_with("size of raw frames on standard input is missing"), "{text}");
         let text = stream(b"", Some(Size::new(2, 2))).err().unwrap().to_string();
         assert!(text.starts_with("standard input: stream is empty"), "{text}");
     }

@@ -31,6 +31,6 @@ pub use frames::Frames;
 pub use raw::RawReader;
 pub use size::Size;
 pub use types::{FlowField, Frame, Image, PixelFormat, Plane, UNKNOWN_FLOW};
-pub use write::{write_atomic, write_bytes};
+pub use write::{check_writable, write_atomic, write_bytes};
 pub use y4m::Y4mReader;
 pub use y4m_write::Y4mWriter;

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 pub enum PixelFormat {
     /// One byte, 0 to 255.
     Gray8,
-    /// Two bytes in the machine's byte order, 0 to 65535.
+    /// Two bytes in the machine's byte order, 0 to 65535. White is as bright as 255 in 8 bits, with fractions between.
     Gray16,
     /// Three bytes: red, green, blue.
     Rgb8,

@@ -12,6 +12,8 @@ use crate::error::{Error, Result};
 /// `content` is given a buffered writer to a temporary file in the same folder; when it returns, the file is flushed,
 /// synchronised and renamed to `path`. If anything fails, the temporary file is removed and `path` is left alone.
 ///
+/// A pipe or a device is written to as it stands.
+///
 /// # Errors
 /// What `content` returns, or [`Error::Io`] naming the folder if the temporary file cannot be made there, or naming
 /// `path` if it cannot be finished.
@@ -20,6 +22,16 @@ pub fn write_atomic(
     content: impl FnOnce(&mut dyn Write) -> Result<()>,
 ) -> Result<()> {
     let path = path.as_ref();
+    if fs::metadata(path).is_ok_and(|target| !target.is_file() && !target.is_dir()) {
+        // A pipe or a device cannot be replaced, only written to.
+        let file = OpenOptions::new().write(true).open(path).map_err(|source| Error::io(path, source))?;
+        let mut out = BufWriter::new(file);
+        content(&mut out)?;
+        return out.flush().map_err(|source| Error::io(path, source));
+    }
+    // What a link points to is replaced, not the link.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let path = target.as_path();
     let (temporary, file) = create_beside(path)?;
     let done = fill(path, file, content)
         .and_then(|()| fs::rename(&temporary, path).map_err(|source| Error::io(path, source)));
@@ -37,6 +49,15 @@ pub fn write_atomic(
 pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     let path = path.as_ref();
     write_atomic(path, |out| out.write_all(bytes).map_err(|source| Error::io(path, source)))
+}
+
+/// Checks that files can be written into a folder that is there, by writing one and removing it.
+///
+/// # Errors
+/// [`Error::Io`] naming the folder.
+pub fn check_writable(folder: impl AsRef<Path>) -> Result<()> {
+    let (probe, _) = create_beside(&folder.as_ref().join("probe"))?;
+    fs::remove_file(&probe).map_err(|source| Error::io(&probe, source))
 }
 
 /// A new file in the folder of `path`, under a name that no other call of this or another process uses.

@@ -80,6 +80,9 @@ pub(super) fn choose(options: &GpuOptions) -> Result<Adapter> {
         );
     }
     if let Some(wanted) = &options.adapter {
+        if wanted.trim().is_empty() {
+            return Err(Error::parameter("adapter", "empty", "part of an adapter's name"));
+        }
         let wanted_lower = wanted.to_lowercase();
         return match names.iter().position(|name| name.to_lowercase().contains(&wanted_lower)) {
             Some(i) => Ok(found.swap_remove(i)),

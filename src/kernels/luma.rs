@@ -1,4 +1,7 @@
 //! Brightness of a frame's pixels, as `f32`.
+//!
+//! White is 255 in every format, and 16-bit samples keep their fractions: the constants of the equations (10⁻³ beside the
+//! determinant, the noise of the confidence) are in those gray levels.
 
 use super::rows::{Split, bands, dimensions, repeat_last};
 use crate::frame::{PixelFormat, Size};
@@ -22,7 +25,7 @@ kernel!(
     "luma" + ["image"],
     reference(Params; frame) -> (gray),
     cases: cases,
-    tolerance: Tolerance { absolute: 0.0, relative: 0.0, of_largest: 0.0, reason: "whole numbers below 2¹⁶ on both sides" },
+    tolerance: Tolerance { absolute: 0.0, relative: 0.0, of_largest: 0.0, reason: "whole numbers below 2¹⁶ on both sides, and one rounded product" },
 );
 
 impl Params {
@@ -43,6 +46,9 @@ pub fn row_words(size: Size, format: PixelFormat) -> usize {
     (size.width as usize * format.bytes()).div_ceil(4)
 }
 
+/// A 16-bit sample's unit in gray levels.
+const WIDE: f32 = 1.0 / 257.0;
+
 fn reference(p: &Params, frame: &[f32], gray: &mut [f32]) {
     let (width, _, stride) = dimensions(p.width, p.height);
     let bytes: &[u8] = bytemuck::cast_slice(frame);
@@ -52,7 +58,7 @@ fn reference(p: &Params, frame: &[f32], gray: &mut [f32]) {
             let row = &bytes[(band.y0 + i) * row_bytes..][..row_bytes];
             match p.format {
                 0 => convert(&mut out[..width], row, |[v]: [u8; 1]| v as f32),
-                1 => convert(&mut out[..width], row, |v| u16::from_le_bytes(v) as f32),
+                1 => convert(&mut out[..width], row, |v| u16::from_ne_bytes(v) as f32 * WIDE),
                 2 => convert(&mut out[..width], row, |[r, g, b]| luma(r, g, b)),
                 _ => convert(&mut out[..width], row, |[r, g, b, _]| luma(r, g, b)),
             }

@@ -1,7 +1,8 @@
 //! The kernels, one file each, and their registry.
 //!
 //! To add one: `shaders/foo.wgsl`, `src/kernels/foo.rs`, and the word `foo` in the list below. The shader's checks,
-//! its pipeline, a named test of GPU against CPU and a bench follow from the list.
+//! its pipeline and a named test of GPU against CPU follow from the list; `viewsphere bench` and `crosscheck` show what a
+//! plan uses.
 
 pub mod cases;
 pub mod compare;
@@ -16,7 +17,7 @@ macro_rules! registry {
         /// Every kernel.
         pub static ALL: &[&crate::kernel::Kernel] = &[$(&$kernel::KERNEL),*];
 
-        /// Calls a macro with the names of all kernels, so that tests and benches are made from the one list.
+        /// Calls a macro with the names of all kernels, so that tests are made from the one list.
         #[macro_export]
         macro_rules! for_each_kernel {
             ($d call:ident) => { $d call! { $($kernel),* } };

@@ -67,12 +67,11 @@ pub(super) struct KernelFigures {
 
 /// Measures one backend at one size.
 pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u32) -> Result<Figures> {
-    let scene = Scene::new(size)?;
-    let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
     let config = Config { flow: flow.clone(), ..Config::default() };
-
     let (engine, engine_ms) = timed(|| Engine::new(backend.clone(), size, &config));
     let mut engine = engine?;
+    let scene = Scene::new(size)?;
+    let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
     let mut run = |number: u32| {
         let frame = played(&images, number).frame()?;
         let (done, ms) = timed(|| engine.process(&frame).map(|_| ()));
@@ -91,7 +90,14 @@ pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u
     };
     let timed_config = Config { timestamps: true, ..config };
     let mut engine = Engine::new(backend.clone(), size, &timed_config)?;
-    let (clock, kernels) = kernels(&mut engine, &images, frames, copy_gb_s)?;
+    let (clock, mut kernels) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
+    drop(engine);
+    // Kernels that only an option uses: once more with all options, for those that are not measured yet.
+    let every_option = Farneback { initial_flow: true, certainty: true, confidence: true, ..flow.clone() };
+    let mut engine = Engine::new(backend.clone(), size, &Config { flow: every_option, ..timed_config })?;
+    let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
+    let known: Vec<&str> = kernels.iter().map(|figures| figures.kernel).collect();
+    kernels.extend(optional.into_iter().filter(|figures| !known.contains(&figures.kernel)));
     Ok(Figures {
         backend: name,
         width: size.width,
@@ -106,7 +112,7 @@ pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u
     })
 }
 
-fn kernels(
+fn kernels_of(
     engine: &mut Engine,
     images: &[Image],
     frames: u32,

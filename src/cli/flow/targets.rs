@@ -10,7 +10,8 @@ use super::Flow;
 use crate::cli::{input, print};
 use crate::error::{Error, Result};
 use crate::frame::{
-    FlowField, Image, PixelFormat, Plane, arrows, colour_wheel, flo, kitti, npy, picture, write_bytes,
+    FlowField, Image, PixelFormat, Plane, arrows, check_writable, colour_wheel, flo, kitti, npy, picture,
+    write_bytes,
 };
 
 /// Pixels between arrows.
@@ -150,7 +151,7 @@ impl Targets {
         Ok(())
     }
 
-    /// Checks that the folders are there or can be made, and that no result would replace another one.
+    /// Checks that the folders can be written into or can be made, and that no result would replace another one.
     fn check(&self) -> Result<()> {
         let mut seen = Vec::new();
         for (_, place) in &self.places {
@@ -158,8 +159,10 @@ impl Targets {
                 Place::Folder(folder, _) => input::folder(folder)?,
                 Place::File(path) => {
                     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-                    let parent = parent.unwrap_or(Path::new("."));
-                    fs::read_dir(parent).map_err(|source| Error::io(parent, source))?;
+                    let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+                    if !special {
+                        check_writable(parent.unwrap_or(Path::new(".")))?;
+                    }
                 }
                 Place::Stdout => {}
             }

@@ -68,12 +68,12 @@ impl Default for Farneback {
 }
 
 impl Farneback {
-    /// Half the default's work, for slow computers.
+    /// About a third of the default's work, for slow computers.
     pub fn fast() -> Self {
         Self { iterations: 1, winsize: 13, ..Self::default() }
     }
 
-    /// Three times the default's work, for recorded frames.
+    /// Two to three times the default's work, for recorded frames.
     pub fn accurate() -> Self {
         Self { levels: 5, winsize: 13, iterations: 10, poly_sigma: 1.1, ..Self::default() }
     }
