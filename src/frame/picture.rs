@@ -83,8 +83,10 @@ pub(super) fn encode_png_as(size: Size, data: &[u8], colour: ExtendedColorType) 
 pub(super) fn decode_dynamic(path: &Path, bytes: &[u8]) -> Result<Decoded> {
     match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Pnm)) => {
-            if format == ImageFormat::Jpeg {
-                check_jpeg_end(path, bytes)?;
+            match format {
+                ImageFormat::Jpeg => check_jpeg_end(path, bytes)?,
+                ImageFormat::Png => check_png_size(path, bytes)?,
+                _ => {}
             }
             let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
             reader.limits(limits());
@@ -127,6 +129,16 @@ fn limits() -> Limits {
     limits.max_image_height = Some(Size::MAX_SIDE);
     limits.max_alloc = Some(u64::from(Size::MAX_SIDE).pow(2) * 8 + (1 << 20));
     limits
+}
+
+/// Checks the size in a PNG's header: the decoder refuses a bad one without saying what it is.
+fn check_png_size(path: &Path, bytes: &[u8]) -> Result<()> {
+    let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    match (side(16), side(20)) {
+        (Some(width), Some(height)) => header_size(path, width.into(), height.into()).map(|_| ()),
+        // Too short for a header, which the decoder tells.
+        _ => Ok(()),
+    }
 }
 
 /// Checks that the scans of a JPEG are followed by the end marker. The decoder itself would fill the missing rest of a
@@ -173,6 +185,16 @@ mod tests {
 
     fn load(bytes: &[u8]) -> Image {
         decode(Path::new("a"), bytes).unwrap()
+    }
+
+    #[test]
+    fn a_png_of_no_legal_size_is_refused_with_its_size() {
+        let mut bytes = encode_png(&load(b"P5\n3 1\n255\n\x00\x32\x64")).unwrap();
+        for (side, size) in [(0_u32, "0×1"), (20000, "20000×1")] {
+            bytes[16..20].copy_from_slice(&side.to_be_bytes());
+            let text = decode(Path::new("a.png"), &bytes).unwrap_err().to_string();
+            assert_eq!(text, format!("a.png: size is {size}, expected 1×1 to 16384×16384"));
+        }
     }
 
     #[test]
