@@ -37,9 +37,13 @@ fn reference(p: &Params, columns: &[f32], gauss: &[f32], place: &[f32], level: &
     let (in_width, _, in_stride) = dimensions(p.in_width, p.height);
     let taps = p.taps as usize;
     let radius = taps / 2;
-    let split = Split { scratch: taps + 1 + in_width + 2 * radius + 2, ..Split::rows_of(stride) };
+    let mirrored = in_width + 2 * radius + 2;
+    let split = Split { scratch: (taps + 1) * width + mirrored, ..Split::rows_of(stride) };
     bands(level, &mut [], split, #[inline(always)] |band| {
-        let (weights, mirrored) = band.scratch.split_at_mut(taps + 1);
+        let (weights, mirrored) = band.scratch.split_at_mut((taps + 1) * width);
+        for (x, weights) in weights.chunks_exact_mut(taps + 1).enumerate() {
+            mix_weights(weights, &gauss[..taps], place[2 * x + 1]);
+        }
         for (i, out) in band.out.chunks_exact_mut(stride).enumerate() {
             let row = &columns[(band.y0 + i) * in_stride..][..in_stride];
             for (k, m) in mirrored[..radius].iter_mut().enumerate() {
@@ -49,8 +53,7 @@ fn reference(p: &Params, columns: &[f32], gauss: &[f32], place: &[f32], level: &
             for (k, m) in mirrored[radius + in_width..].iter_mut().enumerate() {
                 *m = row[reflect_101((in_width + k) as isize, in_width)];
             }
-            for (x, out) in out[..width].iter_mut().enumerate() {
-                mix_weights(weights, &gauss[..taps], place[2 * x + 1]);
+            for (x, (out, weights)) in out[..width].iter_mut().zip(weights.chunks_exact(taps + 1)).enumerate() {
                 let under = &mirrored[place[2 * x] as usize..][..taps + 1];
                 *out = weights.iter().zip(under).fold(0.0, |sum, (w, v)| sum + w * v);
             }
