@@ -7,7 +7,7 @@
 //! Where too little is known around a pixel, A, b and the certainty are 0. The criterion is each pivot of the elimination
 //! against its diagonal element: the share of a term that the terms before it do not explain. With a certainty of 1 that
 //! is at least ⅓. At the edge of a mask it is some 0.3, one pixel into the mask 0.09 and two pixels 0.02 (radius 5, sigma
-//! 1.2), and the noise of b grows by 2, 5 and 12. Nothing is taken from under [`MIN_SHARE`], which holds the growth of
+//! 1.2), and the noise of b grows by 2, 5 and 12. Nothing is taken from under a share of 0.05, which holds the growth of
 //! rounding under twentyfold, and the certainty fades in above it, so that nothing hangs on a pivot's last digit.
 
 use glam::{Mat4, Vec4};
