@@ -11,8 +11,8 @@
 
 use super::cases::{Fill, cases as each_fill, planes, quads};
 use super::matrices::equations_of;
-use super::pair::{Pair, border_weight, each_block, fours};
-use super::rows::{Split, bands, dimensions};
+use super::pair::{Pair, fours};
+use super::rows::dimensions;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -59,35 +59,17 @@ fn reference(
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let certainty_1 = Some(certainty_1);
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride };
-    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
-    bands(
-        equations,
-        &mut [],
-        split,
-        #[inline(always)]
-        |band| {
-            for (x, weight) in band.scratch.iter_mut().enumerate() {
-                *weight = border_weight(x.min(width - 1), width);
+    pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
+        let mut channels = equations_of(model, stretch);
+        for (i, &own) in certainty_0[stretch.at..][..stretch.u.len()].iter().enumerate() {
+            let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
+            let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
+            for channel in &mut channels {
+                channel[i] *= weight;
             }
-            for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
-                let y = band.y0 + i;
-                let border_y = border_weight(y, height);
-                each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, |x0, u, v| {
-                    let model = pair.model(x0, y, u, v);
-                    let certainty_0 = &certainty_0[y * stride + x0..][..u.len()];
-                    let mut channels = equations_of(&model, u, v, &band.scratch[x0..][..u.len()], border_y);
-                    for (i, &own) in certainty_0.iter().enumerate() {
-                        let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
-                        let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
-                        for channel in &mut channels {
-                            channel[i] *= weight;
-                        }
-                    }
-                    channels
-                });
-            }
-        },
-    );
+        }
+        channels
+    });
 }
 
 fn cases(size: Size) -> Vec<Case> {

@@ -4,8 +4,8 @@
 //! what happens outside the picture are OpenCV's.
 
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::pair::{BLOCK, Block, Model, Pair, border_weight, each_block, fours, squared};
-use super::rows::{Split, bands, dimensions};
+use super::pair::{BLOCK, Block, Model, Pair, Stretch, fours, squared};
+use super::rows::dimensions;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -44,24 +44,13 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
-    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
-    bands(equations, &mut [], split, #[inline(always)] |band| {
-        for (x, weight) in band.scratch.iter_mut().enumerate() {
-            *weight = border_weight(x.min(width - 1), width);
-        }
-        for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
-            let y = band.y0 + i;
-            let weight_y = border_weight(y, height);
-            each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, #[inline(always)] |x0, u, v| {
-                equations_of(&pair.model(x0, y, u, v), u, v, &band.scratch[x0..][..u.len()], weight_y)
-            });
-        }
-    });
+    pair.each_block(equations, flow, equations_of);
 }
 
 /// G = AᵀA and h = AᵀΔb with Δb = b + A d: channels xx, xy, yy, x, y.
 #[inline(always)]
-pub(super) fn equations_of(model: &Model, u: &[f32], v: &[f32], weights_x: &[f32], weight_y: f32) -> [Block; 5] {
+pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>) -> [Block; 5] {
+    let Stretch { u, v, weights_x, weight_y, .. } = *stretch;
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, ((u, v), weight_x)) in u.iter().zip(v).zip(weights_x).enumerate() {
         let w = weight_x * weight_y;

@@ -1,5 +1,7 @@
 //! What the kernels that look at two frames' expansions share: reading the second one where the flow points.
 
+use super::rows::{Split, bands};
+
 /// Pixels worked on at a time: few enough that what is known of them stays in the nearest cache.
 pub(super) const BLOCK: usize = 64;
 
@@ -51,7 +53,7 @@ struct Places {
 impl Pair<'_> {
     /// The model of the pixels of row `y` from column `x0` on, as many as `u` and `v` hold displacements of.
     #[inline(always)]
-    pub(super) fn model(&self, x0: usize, y: usize, u: &[f32], v: &[f32]) -> Model {
+    fn model(&self, x0: usize, y: usize, u: &[f32], v: &[f32]) -> Model {
         let count = u.len();
         let places = self.places(x0, y, u, v);
         let (second, cross_terms, certainty_1) = match self.certainty_1 {
@@ -150,39 +152,80 @@ pub(super) fn squared(a_xx: f32, a_xy: f32, a_yy: f32) -> [f32; 3] {
     [a_xx * a_xx + a_xy * a_xy, (a_xx + a_yy) * a_xy, a_yy * a_yy + a_xy * a_xy]
 }
 
-/// Writes the rows of five channels block by block, as `f` computes them from the first column of a block and its
-/// displacements. What overflowed or was never a number says nothing: zeros keep that from spreading.
+/// A block of neighbouring pixels in a row.
+pub(super) struct Stretch<'a> {
+    /// The first one's place in a plane.
+    pub(super) at: usize,
+    /// Their displacements so far.
+    pub(super) u: &'a [f32],
+    pub(super) v: &'a [f32],
+    /// How much they count for their nearness to the left and right border, and all of them for that to the other two.
+    pub(super) weights_x: &'a [f32],
+    pub(super) weight_y: f32,
+}
+
+impl Pair<'_> {
+    /// Fills a picture of five channels as `f` computes them of a block's model. What overflowed or was never a number
+    /// says nothing: zeros keep that from spreading.
+    #[inline(always)]
+    pub(super) fn each_block(
+        &self,
+        out: &mut [f32],
+        flow: &[f32],
+        f: impl Fn(&Model, &Stretch<'_>) -> [Block; 5] + Sync,
+    ) {
+        let stride = self.stride;
+        let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
+        bands(
+            out,
+            &mut [],
+            split,
+            #[inline(always)]
+            |band| {
+                for (x, weight) in band.scratch.iter_mut().enumerate() {
+                    *weight = border_weight(x.min(self.width - 1), self.width);
+                }
+                for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
+                    let y = band.y0 + i;
+                    let weight_y = border_weight(y, self.height);
+                    let (u, v) = flow[2 * y * stride..][..2 * stride].split_at(stride);
+                    for x0 in (0..stride).step_by(BLOCK) {
+                        let block = x0..stride.min(x0 + BLOCK);
+                        let (u, v) = (&u[block.clone()], &v[block.clone()]);
+                        let weights_x = &band.scratch[block.clone()];
+                        let model = self.model(x0, y, u, v);
+                        let mut channels =
+                            f(&model, &Stretch { at: y * stride + x0, u, v, weights_x, weight_y });
+                        zero_unknown(&mut channels, block.len());
+                        for (channel, values) in channels.iter().enumerate() {
+                            rows[channel * stride + x0..][..block.len()]
+                                .copy_from_slice(&values[..block.len()]);
+                        }
+                    }
+                }
+            },
+        );
+    }
+}
+
 #[inline(always)]
-pub(super) fn each_block(
-    rows: &mut [f32],
-    flow: &[f32],
-    stride: usize,
-    f: impl Fn(usize, &[f32], &[f32]) -> [Block; 5],
-) {
-    let (u, v) = flow.split_at(stride);
-    for x0 in (0..stride).step_by(BLOCK) {
-        let count = BLOCK.min(stride - x0);
-        let mut channels = f(x0, &u[x0..][..count], &v[x0..][..count]);
-        for i in 0..count {
-            let size: f32 = channels[0][i].abs()
-                + channels[1][i].abs()
-                + channels[2][i].abs()
-                + channels[3][i].abs()
-                + channels[4][i].abs();
-            let known = size <= 1e30;
-            for channel in &mut channels {
-                channel[i] = if known { channel[i] } else { 0.0 };
-            }
-        }
-        for (channel, values) in channels.iter().enumerate() {
-            rows[channel * stride + x0..][..count].copy_from_slice(&values[..count]);
+fn zero_unknown(channels: &mut [Block; 5], count: usize) {
+    for i in 0..count {
+        let size = channels[0][i].abs()
+            + channels[1][i].abs()
+            + channels[2][i].abs()
+            + channels[3][i].abs()
+            + channels[4][i].abs();
+        let known = size <= 1e30;
+        for channel in &mut *channels {
+            channel[i] = if known { channel[i] } else { 0.0 };
         }
     }
 }
 
 /// How much pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
 #[inline(always)]
-pub(super) fn border_weight(i: usize, n: usize) -> f32 {
+fn border_weight(i: usize, n: usize) -> f32 {
     let step = |distance: usize| match distance {
         0 | 1 => 0.14,
         2..=4 => 0.4472,

@@ -4,8 +4,8 @@
 //! frames show the place, times the first frame's certainty, which all of them are weighted with.
 
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::pair::{BLOCK, Pair, border_weight, each_block, fours, squared};
-use super::rows::{Split, bands, dimensions};
+use super::pair::{BLOCK, Pair, fours, squared};
+use super::rows::dimensions;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -46,29 +46,18 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
-    let split = Split { scratch: stride, ..Split::rows_of(5 * stride) };
-    bands(evidence, &mut [], split, #[inline(always)] |band| {
-        for (x, weight) in band.scratch.iter_mut().enumerate() {
-            *weight = border_weight(x.min(width - 1), width);
+    pair.each_block(evidence, flow, #[inline(always)] |model, stretch| {
+        let mut channels = [[0.0; BLOCK]; 5];
+        for (i, weight_x) in stretch.weights_x.iter().enumerate() {
+            let share = model.inside[i] * certainty[stretch.at + i];
+            let w = share * weight_x * stretch.weight_y;
+            let (b_x, b_y) = (w * model.b_x[i], w * model.b_y[i]);
+            [channels[0][i], channels[1][i], channels[2][i]] =
+                squared(w * model.a_xx[i], w * model.a_xy[i], w * model.a_yy[i]);
+            channels[3][i] = b_x * b_x + b_y * b_y;
+            channels[4][i] = share;
         }
-        for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
-            let y = band.y0 + i;
-            let weight_y = border_weight(y, height);
-            each_block(rows, &flow[2 * y * stride..][..2 * stride], stride, #[inline(always)] |x0, u, v| {
-                let model = pair.model(x0, y, u, v);
-                let mut channels = [[0.0; BLOCK]; 5];
-                for (i, weight_x) in band.scratch[x0..][..u.len()].iter().enumerate() {
-                    let share = model.inside[i] * certainty[y * stride + x0 + i];
-                    let w = share * weight_x * weight_y;
-                    let (b_x, b_y) = (w * model.b_x[i], w * model.b_y[i]);
-                    [channels[0][i], channels[1][i], channels[2][i]] =
-                        squared(w * model.a_xx[i], w * model.a_xy[i], w * model.a_yy[i]);
-                    channels[3][i] = b_x * b_x + b_y * b_y;
-                    channels[4][i] = share;
-                }
-                channels
-            });
-        }
+        channels
     });
 }
 
