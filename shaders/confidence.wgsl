@@ -12,13 +12,6 @@ struct Params {
 @group(0) @binding(2) var<storage, read> window: array<vec4f>;  // as of solve
 @group(0) @binding(3) var<storage, read_write> confidence: array<vec4f>;
 
-// What the expansion of a picture without motion leaves of Δb, squared, by rounding to whole gray levels.
-const NOISE = 0.001;
-// The error that halves the confidence, in pixels.
-const HALF = 0.25;
-// Keeps an error off infinity where there is no texture at all.
-const SMALLEST = 1e-6;
-
 const SPAN = vec2u(16u, 1u);
 
 @compute @workgroup_size(8, 8)
@@ -38,10 +31,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 fn store(four: u32, y: u32, g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, rest: vec4f, coverage: vec4f) {
     let stride = (params.width + 3u) / 4u;
-    let half_difference = 0.5 * (g_xx - g_yy);
-    let weakest = 0.5 * (g_xx + g_yy) - sqrt(half_difference * half_difference + g_xy * g_xy);
-    let error = sqrt((rest + NOISE) / max(weakest, vec4f(SMALLEST)));
-    let value = clamp(coverage, vec4f(), vec4f(1.0)) * HALF / (HALF + error);
+    let value = trusted(g_xx, g_xy, g_yy, rest, coverage);
     if four < stride && y < params.height {
         confidence[y * stride + four] = repeat_last(value, 4u * four, params.width);
     }

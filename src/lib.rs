@@ -39,6 +39,7 @@ pub mod gpu;
 pub mod kernel;
 pub mod kernels;
 pub mod plan;
+pub mod sphere;
 
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};

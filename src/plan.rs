@@ -107,6 +107,8 @@ pub struct Plan {
     pub size: Size,
     /// The buffers.
     pub bufs: Vec<Buf>,
+    /// What is computed once, before the first frame.
+    pub setup: Vec<Step>,
     /// What is computed of a frame alone, into the buffers of its parity.
     pub ingest: [Vec<Step>; 2],
     /// What is computed of a frame and the one before, by the parity of the later one.
@@ -115,12 +117,17 @@ pub struct Plan {
     pub frame: BufId,
     /// Where a frame's certainty goes, if the plan takes one: a plane.
     pub certainty: Option<BufId>,
+    /// Where what is known of the camera's motion goes, if the plan takes it: see
+    /// [`Motion`](crate::sphere::Motion).
+    pub motion: Option<BufId>,
     /// The flow, two channels, by the parity of the later frame.
     pub flow: [BufId; 2],
     /// Whether a pair begins with what stands in the flow buffer of the other parity.
     pub initial_flow: bool,
     /// The confidence, a plane, if the plan computes it.
     pub confidence: Option<BufId>,
+    /// What else is read of a pair, in this order.
+    pub fields: Vec<(BufId, Shape)>,
 }
 
 impl Plan {
@@ -149,7 +156,8 @@ impl Plan {
         for flow in self.flow.iter().filter(|_| self.initial_flow) {
             filled[flow.0] = true;
         }
-        let order = [&self.ingest[0], &self.ingest[1], &self.pair[1], &self.ingest[0], &self.pair[0]];
+        let [even, odd] = &self.ingest;
+        let order = [&self.setup, even, odd, &self.pair[1], even, &self.pair[0]];
         for step in order.into_iter().flatten() {
             step.validate(&self.bufs, &mut filled)?;
         }

@@ -7,9 +7,9 @@ use common::sides::compare_sides;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, area, binomial, certain_expansion_x, certain_expansion_y, certain_matrices, compare, confidence,
-    expansion_x, expansion_y, luma, matrices, resample_x, resample_y, residual, solve, upsample, weigh,
-    window_y,
+    ALL, area, binomial, cells, certain_expansion_x, certain_expansion_y, certain_matrices, compare,
+    confidence, expansion_x, expansion_y, looming, luma, matrices, resample_x, resample_y, residual, sectors,
+    solve, tangent, trust, upsample, weigh, window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -66,6 +66,20 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
     (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
     (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
+    (&tangent::KERNEL, "-shift - (previous - unturned)", "-shift"),
+    (&tangent::KERNEL, "r.y * motion[1].xyz", "r.y * motion[2].xyz"),
+    (&tangent::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),
+    (&trust::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
+    (&trust::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&cells::KERNEL, " - m.xy / z * seen.flow.z", ""),
+    (&cells::KERNEL, "known && m.z > 0.01", "m.z > 0.01"),
+    (&looming::KERNEL, "- 3.0 * dot(origin, here)", "- 2.0 * dot(origin, here)"),
+    (&looming::KERNEL, "0.5 * max(left, 0.0)", "0.0"),
+    (&looming::KERNEL, "trust >= params.least_trust", "true"),
+    (&looming::KERNEL, "i <= params.radius + params.inner", "i <= params.radius"),
+    (&sectors::KERNEL, "max(looming[at.y + at.z], 0.0)", "looming[at.y + at.z]"),
+    (&sectors::KERNEL, "below > ranks", "below >= ranks"),
+    (&sectors::KERNEL, "normal.xxy * normal.yzz", "normal.xxy * normal.yyz"),
     (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
 ];
 

@@ -13,13 +13,15 @@ pub struct CpuExecutor {
 }
 
 impl CpuExecutor {
-    /// Allocates the buffers. Nothing is allocated afterwards.
+    /// Allocates the buffers and runs what is computed once. Nothing is allocated afterwards.
     pub fn new(plan: &Plan) -> Self {
         let values = |content: &Content, len| match content {
             Content::Constant(values) => values.clone(),
             Content::Input | Content::Computed => vec![0.0; len],
         };
-        Self { bufs: plan.bufs.iter().map(|buf| values(&buf.content, buf.len)).collect() }
+        let mut executor = Self { bufs: plan.bufs.iter().map(|buf| values(&buf.content, buf.len)).collect() };
+        plan.setup.iter().for_each(|step| executor.run(step));
+        executor
     }
 
     /// A buffer's values.

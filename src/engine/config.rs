@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::flow::Farneback;
 use crate::frame::{FlowField, PixelFormat, Plane};
 use crate::gpu::Gpu;
+use crate::sphere::Motion;
 
 /// What an engine computes on.
 #[derive(Clone)]
@@ -103,4 +104,7 @@ pub struct Extras<'a> {
     /// What the search for the flow to this frame begins with, in pixels; an unknown displacement is none. Needs
     /// [`Farneback::initial_flow`] or [`Config::warm_start`]. A first frame has no use for it.
     pub initial_flow: Option<&'a FlowField>,
+    /// What is known of the camera's motion since the frame before. Needs a plan that takes it: that of a
+    /// pipeline, which gives it itself.
+    pub motion: Option<&'a Motion>,
 }

@@ -9,6 +9,7 @@ use super::{Config, Extras};
 use crate::cpu::CpuExecutor;
 use crate::frame::Frame;
 use crate::plan::Plan;
+use crate::sphere::Motion;
 
 /// A plan on the CPU, and its frames in flight.
 pub(super) struct CpuStream {
@@ -24,6 +25,7 @@ struct Slot {
     frame: Vec<f32>,
     certainty: Vec<f32>,
     initial: Vec<f32>,
+    motion: Vec<f32>,
     /// Steps done.
     progress: usize,
     results: Results,
@@ -37,7 +39,8 @@ impl CpuStream {
             certainty: vec![0.0; layout.certainty],
             initial: vec![0.0; layout.initial],
             progress: 0,
-            results: Results::new(&layout),
+            motion: vec![0.0; layout.motion],
+            results: Results::new(&layout, plan),
         };
         Self {
             exec: CpuExecutor::new(plan),
@@ -67,6 +70,7 @@ impl CpuStream {
         if let Some(field) = extras.initial_flow {
             fill(&mut slot.initial, layout::flow(field));
         }
+        fill(&mut slot.motion, extras.motion.unwrap_or(&Motion::UNKNOWN).values().into_iter());
     }
 
     pub(super) fn start(&mut self, plan: &Plan, slot: usize, job: Job) {
@@ -75,6 +79,9 @@ impl CpuStream {
         self.exec.buf_mut(plan.frame).copy_from_slice(&slot.frame);
         if let Some(certainty) = plan.certainty {
             self.exec.buf_mut(certainty)[..slot.certainty.len()].copy_from_slice(&slot.certainty);
+        }
+        if let Some(motion) = plan.motion {
+            self.exec.buf_mut(motion)[..slot.motion.len()].copy_from_slice(&slot.motion);
         }
         let initial = plan.flow[1 - job.parity];
         match job.begin {
@@ -118,6 +125,10 @@ impl CpuStream {
         }
         if let Some(confidence) = plan.confidence.filter(|_| self.layout.confidence > 0) {
             layout::unpack_plane(self.exec.buf(confidence), size, &mut results.confidence.data);
+        }
+        for (kept, (field, _)) in results.fields.iter_mut().zip(&plan.fields) {
+            let len = kept.len();
+            kept.copy_from_slice(&self.exec.buf(*field)[..len]);
         }
     }
 

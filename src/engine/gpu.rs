@@ -36,7 +36,7 @@ impl GpuStream {
             let ticks = clock.as_ref().map_or(0, Clock::bytes);
             let slots =
                 (0..config.in_flight).map(|_| Slot::new(gpu, &layout, ticks)).collect::<Result<_>>()?;
-            let results = Results::new(&layout);
+            let results = Results::new(&layout, plan);
             Ok(Self { gpu: gpu.clone(), exec, layout, slots, results, clock, trusted: false })
         })
     }
@@ -87,6 +87,10 @@ impl GpuStream {
                 encoder.copy_buffer_to_buffer(upload, at, initial, 0, bytes(layout.initial));
             }
         }
+        if let Some(motion) = plan.motion {
+            let at = bytes(layout.upload() - layout.motion);
+            encoder.copy_buffer_to_buffer(upload, at, exec.buf(motion), 0, bytes(layout.motion));
+        }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             let queries = clock.as_ref().map(|clock| &clock.queries);
@@ -102,6 +106,11 @@ impl GpuStream {
             if let Some(confidence) = plan.confidence.filter(|_| job.pair && layout.confidence > 0) {
                 let (from, len) = (exec.buf(confidence), bytes(layout.confidence));
                 encoder.copy_buffer_to_buffer(from, 0, readback, bytes(layout.flow), len);
+            }
+            let mut at = layout.flow + layout.confidence;
+            for (field, shape) in plan.fields.iter().filter(|_| job.pair) {
+                encoder.copy_buffer_to_buffer(exec.buf(*field), 0, readback, bytes(at), bytes(shape.len()));
+                at += shape.len();
             }
             if let Some(clock) = clock {
                 clock.copy(&mut encoder, job.steps(plan), readback, layout);
@@ -135,9 +144,15 @@ impl GpuStream {
             let view = readback.get_mapped_range(..).map_err(|error| gpu.lost_error(error.to_string()))?;
             if job.pair {
                 let values: &[f32] = bytemuck::cast_slice(&view[..4 * layout.readback()]);
-                let (flow, confidence) = values.split_at(layout.flow);
+                let (flow, rest) = values.split_at(layout.flow);
+                let (confidence, mut fields) = rest.split_at(layout.confidence);
                 layout::unpack_flow(flow, layout.size, &mut results.flow.data);
                 layout::unpack_plane(confidence, layout.size, &mut results.confidence.data);
+                for field in &mut results.fields {
+                    let values;
+                    (values, fields) = fields.split_at(field.len());
+                    field.copy_from_slice(values);
+                }
             }
             if let Some(clock) = clock {
                 clock.read(&view, job.parity, job.steps(plan), layout);

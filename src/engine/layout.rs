@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::{FlowField, Frame, PixelFormat, Size};
 use crate::kernels::luma;
 use crate::plan::{Plan, Shape};
+use crate::sphere::MOTION_LEN;
 
 /// Lengths of what goes into and comes out of a plan, in values of four bytes.
 #[derive(Clone, Copy)]
@@ -20,10 +21,14 @@ pub(super) struct Layout {
     pub(super) certainty: usize,
     /// 0 where the plan takes none.
     pub(super) initial: usize,
+    /// 0 where the plan takes none.
+    pub(super) motion: usize,
     /// 0 where it is not read.
     pub(super) flow: usize,
     /// 0 where it is not read.
     pub(super) confidence: usize,
+    /// All the plan's fields together.
+    pub(super) fields: usize,
 }
 
 impl Layout {
@@ -38,19 +43,21 @@ impl Layout {
             frame: plan.buf(plan.frame).len,
             certainty: when(plan.certainty.is_some(), plane),
             initial: when(plan.initial_flow, field),
+            motion: plan.motion.map_or(0, |_| MOTION_LEN),
             flow: when(config.read_flow, field),
             confidence: when(config.read_confidence && plan.confidence.is_some(), plane),
+            fields: plan.fields.iter().map(|(_, shape)| shape.len()).sum(),
         }
     }
 
     /// Values that come with a frame.
     pub(super) fn upload(&self) -> usize {
-        self.frame + self.certainty + self.initial
+        self.frame + self.certainty + self.initial + self.motion
     }
 
     /// Values that are read of a pair.
     pub(super) fn readback(&self) -> usize {
-        self.flow + self.confidence
+        self.flow + self.confidence + self.fields
     }
 
     /// Checks that a frame and what comes with it fit.
@@ -71,6 +78,9 @@ impl Layout {
             }
             certainty.validate()?;
             same_size("certainty", certainty.size)?;
+        }
+        if extras.motion.is_some() && self.motion == 0 {
+            return Err(Error::parameter("motion", "given", "none, as nothing of the plan asks for it"));
         }
         if let Some(flow) = extras.initial_flow {
             if self.initial == 0 {

@@ -84,6 +84,8 @@ pub struct Output<'a> {
     pub flow: Option<&'a FlowField>,
     /// How far the flow is to be trusted, if it is computed and [`Config::read_confidence`] asks for it.
     pub confidence: Option<&'a Plane>,
+    /// The plan's fields.
+    pub(crate) fields: &'a [Vec<f32>],
     /// Time from submit until now.
     pub latency: Duration,
 }
@@ -95,9 +97,14 @@ impl Engine {
     /// [`Error::Parameter`] for a parameter or size that is out of range; [`Error::TooLarge`] and
     /// [`Error::OutOfMemory`] if the adapter has no room for such frames; [`Error::DeviceLost`] if it is gone.
     pub fn new(backend: Backend, size: Size, config: &Config) -> Result<Self> {
-        static ENGINES: AtomicU64 = AtomicU64::new(0);
         config.validate()?;
         let plan = config.estimator().plan(size, config.format)?;
+        Self::with_plan(backend, plan, config)
+    }
+
+    /// Makes an engine for a plan of any estimator; the configuration's own is not looked at.
+    pub(crate) fn with_plan(backend: Backend, plan: Plan, config: &Config) -> Result<Self> {
+        static ENGINES: AtomicU64 = AtomicU64::new(0);
         let stream = match backend {
             Backend::Gpu(gpu) => Stream::Gpu(Box::new(GpuStream::new(&gpu, &plan, config)?)),
             Backend::Cpu => Stream::Cpu(Box::new(CpuStream::new(&plan, config))),

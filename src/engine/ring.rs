@@ -8,12 +8,13 @@ use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::gpu::Gpu;
 use crate::plan::Plan;
+use crate::sphere::Motion;
 
 /// The buffers of a frame in flight.
 pub(super) struct Slot {
-    /// The frame, its certainty, its initial flow. Mapped whenever no submission holds it.
+    /// The frame, its certainty, its initial flow, its motion. Mapped whenever no submission holds it.
     pub(super) upload: Buffer,
-    /// The flow, the confidence, the clock's ticks; none if nothing of it is read.
+    /// The flow, the confidence, the plan's fields, the clock's ticks; none if nothing of it is read.
     pub(super) readback: Option<Buffer>,
     /// The submission that holds the buffers.
     pub(super) submission: Option<SubmissionIndex>,
@@ -66,6 +67,10 @@ impl Slot {
         }
         if let Some(field) = extras.initial_flow {
             write(&mut view, layout.frame + layout.certainty, layout.initial, layout::flow(field));
+        }
+        if layout.motion > 0 {
+            let values = extras.motion.unwrap_or(&Motion::UNKNOWN).values();
+            write(&mut view, layout.upload() - layout.motion, layout.motion, values.into_iter());
         }
         Ok(())
     }

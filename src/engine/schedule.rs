@@ -217,6 +217,7 @@ impl Engine {
             previous: taken.previous,
             flow: (self.layout.flow > 0).then_some(&results.flow),
             confidence: (self.layout.confidence > 0).then_some(&results.confidence),
+            fields: &results.fields,
             latency: taken.latency,
         })
     }

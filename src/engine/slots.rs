@@ -36,15 +36,18 @@ impl Job {
 pub(super) struct Results {
     pub(super) flow: FlowField,
     pub(super) confidence: Plane,
+    /// The plan's fields.
+    pub(super) fields: Vec<Vec<f32>>,
 }
 
 impl Results {
-    pub(super) fn new(layout: &Layout) -> Self {
+    pub(super) fn new(layout: &Layout, plan: &Plan) -> Self {
         let size = layout.size;
         let pixels = |wanted: usize| if wanted > 0 { size.pixels() } else { 0 };
         Self {
             flow: FlowField { size, data: vec![[0.0; 2]; pixels(layout.flow)] },
             confidence: Plane { size, data: vec![0.0; pixels(layout.confidence)] },
+            fields: plan.fields.iter().map(|(_, shape)| vec![0.0; shape.len()]).collect(),
         }
     }
 }

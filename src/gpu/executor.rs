@@ -84,7 +84,7 @@ impl Pipeline {
 }
 
 impl GpuExecutor {
-    /// Makes the plan's buffers, pipelines and bind groups.
+    /// Makes the plan's buffers, pipelines and bind groups, and has the device run what is computed once.
     ///
     /// # Errors
     /// [`Error::TooLarge`] if a buffer is over the device's limits, [`Error::Kernel`] if a shader does not fit its
@@ -108,6 +108,13 @@ impl GpuExecutor {
         let mut dispatches = |steps: &[Step]| dispatches(gpu, steps, &bufs, &mut pipelines);
         let ingest = [dispatches(&plan.ingest[0])?, dispatches(&plan.ingest[1])?];
         let pair = [dispatches(&plan.pair[0])?, dispatches(&plan.pair[1])?];
+        if !plan.setup.is_empty() {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            dispatches(&plan.setup)?.iter().for_each(|dispatch| dispatch.record(&mut pass));
+            drop(pass);
+            gpu.queue.submit([encoder.finish()]);
+        }
         Ok(Self { gpu: gpu.clone(), bufs, ingest, pair })
     }
 

@@ -19,7 +19,7 @@ const HALF: f32 = 0.25;
 const SMALLEST: f32 = 1e-6;
 
 kernel!(
-    "confidence" + ["image", "window", "average"],
+    "confidence" + ["image", "window", "average", "trust"],
     reference(Params; columns, window) -> (confidence),
     cases: cases,
     tolerance: Tolerance {
@@ -34,13 +34,20 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]
     let width = p.width as usize;
     average(p, columns, window, confidence, 1, #[inline(always)] |[g_xx, g_xy, g_yy, rest, coverage], row| {
         for x in 0..width {
-            let half_difference = 0.5 * (g_xx[x] - g_yy[x]);
-            let root = (half_difference * half_difference + g_xy[x] * g_xy[x]).sqrt();
-            let weakest = 0.5 * (g_xx[x] + g_yy[x]) - root;
-            let error = ((rest[x] + NOISE) / weakest.max(SMALLEST)).sqrt();
-            row[x] = coverage[x].clamp(0.0, 1.0) * HALF / (HALF + error);
+            row[x] = trusted([g_xx[x], g_xy[x], g_yy[x], rest[x], coverage[x]]);
         }
     });
+}
+
+/// The confidence of what has this evidence: the mean of AᵀA (xx, xy, yy), the mean square of what the flow leaves of Δb,
+/// and the share that both frames show.
+#[inline(always)]
+pub(super) fn trusted([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5]) -> f32 {
+    let half_difference = 0.5 * (g_xx - g_yy);
+    let root = (half_difference * half_difference + g_xy * g_xy).sqrt();
+    let weakest = 0.5 * (g_xx + g_yy) - root;
+    let error = ((rest + NOISE) / weakest.max(SMALLEST)).sqrt();
+    coverage.clamp(0.0, 1.0) * HALF / (HALF + error)
 }
 
 /// The equations of `solve`, whose right-hand sides stand in, made positive, for residual and coverage.

@@ -8,6 +8,7 @@ pub mod cases;
 pub mod compare;
 mod pair;
 pub(crate) mod rows;
+mod sighting;
 pub mod tables;
 
 macro_rules! registry {
@@ -44,4 +45,9 @@ registry!(
     solve,
     residual,
     confidence,
+    tangent,
+    trust,
+    cells,
+    looming,
+    sectors,
 );

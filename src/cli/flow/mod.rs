@@ -168,10 +168,11 @@ fn compute(
     let mut report = Report::new(engine.adapter(), first.size);
     let certainty = given.mask.as_ref();
     let mut initial_flow = given.init.as_ref();
-    engine.process_with(&first.frame()?, &Extras { certainty, initial_flow: None })?;
+    engine.process_with(&first.frame()?, &Extras { certainty, ..Extras::default() })?;
     targets.make_folders()?;
     loop {
-        let output = engine.process_with(&second.frame()?, &Extras { certainty, initial_flow })?;
+        let output =
+            engine.process_with(&second.frame()?, &Extras { certainty, initial_flow, motion: None })?;
         if let Some((flow, output)) = output.and_then(|output| Some((output.flow?, output))) {
             targets.write(report.pairs, &Pair { first: &first, flow, confidence: output.confidence })?;
             report.add(flow);

@@ -7,32 +7,29 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers that only a certainty needs.
 pub(super) struct Certain {
-    /// The frame's certainty, as the caller gives it.
-    pub(super) input: BufId,
     /// The gray picture times its certainty, and the certainty within its range.
     weighted: BufId,
     certainty: BufId,
     /// The certainty as a level sees it.
     level: BufId,
     moments: BufId,
-    /// Of each level's expansion, finest first, for both parities.
+    /// Of each level's expansion, finest first, for both slots.
     expansions: Vec<[BufId; 2]>,
 }
 
 impl Certain {
     pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level]) -> Self {
         let plane = Shape::planar(size, 1);
-        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, parity: &str| {
-            bufs.computed(format!("certainty, level {k}, {parity} frames"), Shape::planar(level.size, 1))
+        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: &str| {
+            bufs.computed(format!("certainty, level {k}, {slot} frames"), Shape::planar(level.size, 1))
         };
         Self {
-            input: bufs.input("certainty", plane.len()),
             weighted: bufs.computed("gray times certainty", plane),
             certainty: bufs.computed("certainty in its range", plane),
             level: bufs.computed("level's certainty", plane),
             moments: bufs.computed("moments with certainty", Shape::planar(size, 8)),
             expansions: (levels.iter().enumerate())
-                .map(|(k, level)| ["even", "odd"].map(|parity| expansion(bufs, k, level, parity)))
+                .map(|(k, level)| ["even", "odd"].map(|slot| expansion(bufs, k, level, slot)))
                 .collect(),
         }
     }
@@ -43,18 +40,18 @@ impl Certain {
     }
 
     /// Where the certainty of a level's expansion lies.
-    pub(super) fn expansion(&self, k: usize, parity: usize) -> BufId {
-        self.expansions[k][parity]
+    pub(super) fn expansion(&self, k: usize, slot: usize) -> BufId {
+        self.expansions[k][slot]
     }
 
-    /// The gray picture times its certainty.
-    pub(super) fn weigh(&self, gray: BufId, size: Size) -> Step {
+    /// A gray picture times its certainty.
+    pub(super) fn weigh(&self, gray: BufId, certainty: BufId, size: Size) -> Step {
         let plane = Shape::planar(size, 1);
         Step::new(
             &weigh::KERNEL,
             "frame",
             weigh::Params { width: size.width, height: size.height },
-            &[gray, self.input],
+            &[gray, certainty],
             &[(self.weighted, plane), (self.certainty, plane)],
         )
     }

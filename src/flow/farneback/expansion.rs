@@ -3,37 +3,33 @@
 use super::Farneback;
 use super::certain::Certain;
 use crate::flow::levels::Level;
-use crate::frame::{PixelFormat, Size};
+use crate::frame::Size;
 use crate::kernels::tables::{self, Applicability};
-use crate::kernels::{binomial, expansion_x, expansion_y, luma, resample_x, resample_y};
+use crate::kernels::{binomial, expansion_x, expansion_y, resample_x, resample_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Where a level's expansion lies: `f(x) ≈ xᵀA x + bᵀx + c`.
 #[derive(Clone, Copy)]
-pub(super) struct Expansion {
+pub(crate) struct Expansion {
     /// b_x, b_y, A_xx, A_yy of each pixel.
-    pub(super) quad: BufId,
+    pub(crate) quad: BufId,
     /// 2 A_xy of each pixel.
-    pub(super) cross_term: BufId,
+    pub(crate) cross_term: BufId,
     /// How certain it is, where frames come with a certainty.
     pub(super) certainty: Option<BufId>,
 }
 
 /// The buffers of this part of the plan.
 pub(super) struct Expansions {
-    /// The frame's bytes.
-    pub(super) frame: BufId,
-    /// Of each level, finest first, for both parities.
+    /// Of each level, finest first, for both slots.
     pub(super) levels: Vec<[Expansion; 2]>,
     /// What a certainty adds.
     pub(super) certain: Option<Certain>,
     size: Size,
-    format: PixelFormat,
     radius: u32,
     applicability: Applicability,
     weights_y: BufId,
     weights_x: BufId,
-    gray: BufId,
     columns: BufId,
     image: BufId,
     /// Of the expansion without certainty.
@@ -50,33 +46,25 @@ struct Reduction {
 }
 
 impl Expansions {
-    pub(super) fn new(
-        bufs: &mut Bufs,
-        config: &Farneback,
-        size: Size,
-        format: PixelFormat,
-        levels: &[Level],
-    ) -> Self {
+    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, size: Size, levels: &[Level]) -> Self {
         let applicability = tables::applicability(config.poly_n, config.poly_sigma);
         let certain = config.certainty.then(|| Certain::new(bufs, size, levels));
-        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, parity: usize| {
-            let frames = ["even frames", "odd frames"][parity];
+        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
+            let frames = ["even frames", "odd frames"][slot];
             Expansion {
                 quad: bufs.computed(format!("quad, level {k}, {frames}"), Shape::quads(level.size)),
                 cross_term: bufs
                     .computed(format!("cross term, level {k}, {frames}"), Shape::planar(level.size, 1)),
-                certainty: certain.as_ref().map(|certain| certain.expansion(k, parity)),
+                certainty: certain.as_ref().map(|certain| certain.expansion(k, slot)),
             }
         };
         Self {
-            frame: bufs.input("frame", luma::row_words(size, format) * size.height as usize),
             levels: levels
                 .iter()
                 .enumerate()
-                .map(|(k, level)| [0, 1].map(|parity| expansion(bufs, k, level, parity)))
+                .map(|(k, level)| [0, 1].map(|slot| expansion(bufs, k, level, slot)))
                 .collect(),
             size,
-            format,
             radius: config.poly_n,
             weights_y: bufs.constant(
                 "applicability, columns",
@@ -90,7 +78,6 @@ impl Expansions {
                 ),
             ),
             applicability,
-            gray: bufs.computed("gray", Shape::planar(size, 1)),
             columns: bufs.computed("smoothed columns", Shape::planar(size, 1)),
             image: bufs.computed("level's image", Shape::planar(size, 1)),
             moments: certain.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
@@ -109,22 +96,16 @@ impl Expansions {
         }
     }
 
-    /// The steps for a frame of this parity.
-    pub(super) fn steps(&self, parity: usize) -> Vec<Step> {
-        let gray = Shape::planar(self.size, 1);
-        let mut steps = vec![Step::new(
-            &luma::KERNEL,
-            "frame",
-            luma::Params::new(self.size, self.format),
-            &[self.frame],
-            &[(self.gray, gray)],
-        )];
-        let pictures = match &self.certain {
-            None => vec![[self.gray, self.image]],
-            Some(certain) => {
-                steps.push(certain.weigh(self.gray, self.size));
+    /// The expansion of a gray picture into this slot. Its certainty is needed if the estimator takes one.
+    pub(super) fn steps(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
+        let plane = Shape::planar(self.size, 1);
+        let mut steps = Vec::new();
+        let pictures = match (&self.certain, certainty) {
+            (Some(certain), Some(certainty)) => {
+                steps.push(certain.weigh(gray, certainty, self.size));
                 certain.pictures(self.image)
             }
+            _ => vec![[gray, self.image]],
         };
         for &[full, level] in &pictures {
             steps.push(Step::new(
@@ -132,15 +113,15 @@ impl Expansions {
                 "level 0",
                 binomial::Params::new(self.size),
                 &[full],
-                &[(level, gray)],
+                &[(level, plane)],
             ));
         }
-        self.expand(&mut steps, 0, self.size, parity);
+        self.expand(&mut steps, 0, self.size, slot);
         for (i, reduction) in self.reductions.iter().enumerate() {
             for &picture in &pictures {
                 self.reduce(&mut steps, i + 1, reduction, picture);
             }
-            self.expand(&mut steps, i + 1, reduction.level.size, parity);
+            self.expand(&mut steps, i + 1, reduction.level.size, slot);
         }
         steps
     }
@@ -166,8 +147,8 @@ impl Expansions {
     }
 
     /// The polynomial expansion of a level's image.
-    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, parity: usize) {
-        let Expansion { quad, cross_term, certainty } = self.levels[k][parity];
+    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize) {
+        let Expansion { quad, cross_term, certainty } = self.levels[k][slot];
         if let (Some(certain), Some(certainty)) = (&self.certain, certainty) {
             let inputs = [self.image, self.weights_y, self.weights_x];
             steps.extend(certain.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));

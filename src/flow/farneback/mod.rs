@@ -4,13 +4,14 @@ mod certain;
 mod expansion;
 mod motion;
 
-use expansion::Expansions;
+use expansion::{Expansion, Expansions};
 use motion::Motion;
 
 use crate::error::{Error, Result};
 use crate::flow::levels::levels;
 use crate::frame::{PixelFormat, Size};
-use crate::plan::{Bufs, Plan, Shape};
+use crate::kernels::luma;
+use crate::plan::{BufId, Bufs, Plan, Shape, Step};
 
 /// The window over which a pixel's neighbours are taken to move alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,8 +110,10 @@ impl Farneback {
     pub fn plan(&self, size: Size, format: PixelFormat) -> Result<Plan> {
         self.validate()?;
         size.validate()?;
-        let levels = levels(size, self.pyr_scale, self.levels);
         let mut bufs = Bufs::default();
+        let frame = bufs.input("frame", luma::row_words(size, format) * size.height as usize);
+        let gray = bufs.computed("gray", Shape::planar(size, 1));
+        let certainty = self.certainty.then(|| bufs.input("certainty", Shape::planar(size, 1).len()));
         let first = bufs.computed("flow", Shape::planar(size, 2));
         let second = if self.initial_flow {
             bufs.computed("flow of odd frames", Shape::planar(size, 2))
@@ -118,20 +121,67 @@ impl Farneback {
             first
         };
         let flow = [first, second];
-        let expansions = Expansions::new(&mut bufs, self, size, format, &levels);
-        let motion = Motion::new(&mut bufs, self, &levels);
+        let parts = Parts::new(&mut bufs, self, size);
         let plan = Plan {
             size,
-            ingest: [0, 1].map(|parity| expansions.steps(parity)),
-            pair: [0, 1].map(|parity| motion.steps(&expansions, flow, parity)),
-            frame: expansions.frame,
-            certainty: expansions.certain.as_ref().map(|certain| certain.input),
+            setup: Vec::new(),
+            frame,
+            certainty,
+            motion: None,
+            ingest: [0, 1].map(|parity| {
+                let mut steps = vec![gray_step(size, format, frame, gray)];
+                steps.extend(parts.expand(gray, certainty, parity));
+                steps
+            }),
+            pair: [0, 1].map(|parity| parts.flow([1 - parity, parity], flow[1 - parity], flow[parity])),
             flow,
             initial_flow: self.initial_flow,
-            confidence: motion.confidence(),
+            confidence: parts.motion.confidence(),
+            fields: Vec::new(),
             bufs: bufs.finish(),
         };
         plan.validate()?;
         Ok(plan)
+    }
+}
+
+/// The brightness of a frame's pixels.
+pub(crate) fn gray_step(size: Size, format: PixelFormat, frame: BufId, gray: BufId) -> Step {
+    let params = luma::Params::new(size, format);
+    Step::new(&luma::KERNEL, "frame", params, &[frame], &[(gray, Shape::planar(size, 1))])
+}
+
+/// The estimator's buffers and the steps that fill them, for plans that do more than flow.
+///
+/// Pictures are expanded into one of two slots, and the flow leads from the picture in one to that in the other.
+pub(crate) struct Parts {
+    expansions: Expansions,
+    motion: Motion,
+}
+
+impl Parts {
+    /// Of a configuration and size that are valid.
+    pub(crate) fn new(bufs: &mut Bufs, config: &Farneback, size: Size) -> Self {
+        let levels = levels(size, config.pyr_scale, config.levels);
+        Self {
+            expansions: Expansions::new(bufs, config, size, &levels),
+            motion: Motion::new(bufs, config, &levels),
+        }
+    }
+
+    /// The expansion of a gray picture into a slot. Its certainty is needed if the configuration asks for one.
+    pub(crate) fn expand(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
+        self.expansions.steps(gray, certainty, slot)
+    }
+
+    /// The flow from the picture in the first slot to that in the second. It begins with the given one, if the
+    /// configuration asks for one.
+    pub(crate) fn flow(&self, slots: [usize; 2], given: BufId, flow: BufId) -> Vec<Step> {
+        self.motion.steps(&self.expansions, slots, given, flow)
+    }
+
+    /// The expansion of the full picture in a slot.
+    pub(crate) fn finest(&self, slot: usize) -> Expansion {
+        self.expansions.levels[0][slot]
     }
 }

@@ -98,25 +98,31 @@ impl Motion {
         self.trust.as_ref().map(|trust| trust.confidence)
     }
 
-    /// The steps for a frame of this parity and the one before.
-    pub(super) fn steps(&self, expansions: &Expansions, flow: [BufId; 2], parity: usize) -> Vec<Step> {
+    /// The flow from the picture in the first of two slots to that in the second. It begins with the given one, if the
+    /// estimator takes one.
+    pub(super) fn steps(
+        &self,
+        expansions: &Expansions,
+        [first, second]: [usize; 2],
+        given: BufId,
+        flow: BufId,
+    ) -> Vec<Step> {
         let mut steps = Vec::new();
         let mut coarser: Option<(BufId, Level)> = None;
         for (k, level) in self.levels.iter().enumerate().rev() {
-            let own = level.flow.unwrap_or(flow[parity]);
+            let own = level.flow.unwrap_or(flow);
             let begin = match (coarser, &self.start) {
                 (Some((flow, of)), _) => {
                     steps.push(self.refine(k, level, flow, of, own));
                     own
                 }
                 (None, Start::Given(cover)) => {
-                    steps.push(self.reduce(k, level, flow[1 - parity], *cover, own));
+                    steps.push(self.reduce(k, level, given, *cover, own));
                     own
                 }
                 (None, Start::Zero(zero)) => *zero,
             };
-            let [even, odd] = expansions.levels[k];
-            let pair = if parity == 1 { [even, odd] } else { [odd, even] };
+            let pair = [expansions.levels[k][first], expansions.levels[k][second]];
             for i in 0..self.iterations {
                 let from = if i == 0 { begin } else { own };
                 self.iterate(

@@ -1,0 +1,32 @@
+
+// Bearings on the view sphere, and how the camera turned between two frames.
+// A ray is (x, y, 1) of the ideal pinhole; motion holds the rows of prev_from_cur − 1, then the direction of motion.
+
+// A ray of the current camera as the previous camera sees it.
+fn turned(r: vec3f) -> vec3f {
+    return r + vec3f(dot(motion[0].xyz, r), dot(motion[1].xyz, r), dot(motion[2].xyz, r));
+}
+
+// A ray of the previous camera as the current camera sees it.
+fn turned_back(r: vec3f) -> vec3f {
+    return r + r.x * motion[0].xyz + r.y * motion[1].xyz + r.z * motion[2].xyz;
+}
+
+struct Sighting {
+    midpoint: vec3f, // unit bearing half-way
+    flow: vec3f,     // tangent there, in radians
+}
+
+// What was seen at ray b and is seen at ray a now moved along the arc from b to a. difference is a − b, so that a small
+// arc keeps all its digits.
+fn sighting(a: vec3f, b: vec3f, difference: vec3f) -> Sighting {
+    let length_a = length(a);
+    let length_b = length(b);
+    let shorter = dot(difference, a + b) / (length_a + length_b);
+    let chord = (difference * length_b - b * shorter) / (length_a * length_b);
+    let sum = a / length_a + b / length_b;
+    // The arc against its chord: asin(z) / z at half the chord.
+    let z = 0.25 * dot(chord, chord);
+    let arc = 1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0 + z * (15.0 / 336.0 + z * (105.0 / 3456.0))));
+    return Sighting(sum / max(length(sum), 1e-20), chord * arc);
+}

@@ -1,0 +1,112 @@
+// What the cells of each sector of the view say together.
+
+struct Params {
+    columns: u32,
+    rows: u32,
+    cell_columns: u32,
+    least_trust: f32,
+    quantile: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> cells: array<f32>;   // channels: trust, x, y, dx/dt, dy/dt
+@group(0) @binding(2) var<storage, read> looming: array<f32>; // channels: N, div, standard error of N, trust
+@group(0) @binding(3) var<storage, read> ranges: array<vec2f>; // of members: first and count, sector by sector
+@group(0) @binding(4) var<storage, read> members: array<f32>; // cells, by their number
+// Channels: coverage, N low, median and high, div, trust, F (3), Σw n nᵀ (xx, xy, xz, yy, yz, zz), standard error of N.
+@group(0) @binding(5) var<storage, read_write> sectors: array<f32>;
+
+const SPAN = vec2u(1u, 1u);
+const MAX_MEMBERS = 65536u;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let sector = min(id.xy, vec2u(params.columns, params.rows) - 1u);
+    let range = ranges[sector.y * params.columns + sector.x];
+    let first = u32(range.x);
+    let count = u32(range.y);
+    var valid = 0u;
+    var trust = 0.0;
+    var error = 0.0;
+    var flow = vec3f();
+    var along = vec3f();  // moment xx, yy, zz
+    var across = vec3f(); // moment xy, xz, yz
+    for (var k = 0u; k < min(count, MAX_MEMBERS); k++) {
+        let at = place(u32(members[first + k]));
+        let w = looming[at.y + 3u * at.z];
+        let known = w >= params.least_trust;
+        let sight = normalize(vec3f(cells[at.x + at.z], cells[at.x + 2u * at.z], 1.0));
+        let rate = vec3f(cells[at.x + 3u * at.z], cells[at.x + 4u * at.z], 0.0);
+        let f = (rate - sight * dot(sight, rate)) * sight.z;
+        let normal = cross(sight, f);
+        let share = select(0.0, w, known);
+        valid += select(0u, 1u, known);
+        trust += share;
+        error += share * looming[at.y + 2u * at.z];
+        flow += share * f;
+        along += share * normal * normal;
+        across += share * normal.xxy * normal.yzz;
+    }
+    let low = f32(max(valid, 1u) - 1u);
+    let ranks = vec3u(vec3f(floor(low * (1.0 - params.quantile) + 0.5), floor(low * 0.5 + 0.5),
+        floor(low * params.quantile + 0.5)));
+    // The value of each rank, found from its highest bit to its lowest by counting what is smaller.
+    var found = vec3u();
+    var found_div = 0u;
+    for (var bit = 0u; bit < 32u; bit++) {
+        let one = 0x80000000u >> bit;
+        let guess = found | vec3u(one);
+        let guess_div = found_div | one;
+        var below = vec3u();
+        var below_div = 0u;
+        for (var k = 0u; k < min(count, MAX_MEMBERS); k++) {
+            let at = place(u32(members[first + k]));
+            let known = looming[at.y + 3u * at.z] >= params.least_trust;
+            below += select(vec3u(), vec3u(1u), (vec3u(key(looming[at.y])) < guess) & vec3<bool>(known));
+            below_div += select(0u, 1u, known && key(max(looming[at.y + at.z], 0.0)) < guess_div);
+        }
+        found = select(guess, found, below > ranks);
+        found_div = select(guess_div, found_div, below_div > ranks.z);
+    }
+    let stride = (params.columns + 3u) / 4u * 4u;
+    if id.x < stride && id.y < params.rows {
+        let known = valid > 0u;
+        let share = 1.0 / max(trust, 1e-20);
+        let out = 16u * id.y * stride + id.x;
+        sectors[out] = f32(valid) / f32(max(count, 1u));
+        sectors[out + stride] = select(0.0, value(found.x), known);
+        sectors[out + 2u * stride] = select(0.0, value(found.y), known);
+        sectors[out + 3u * stride] = select(0.0, value(found.z), known);
+        sectors[out + 4u * stride] = select(0.0, value(found_div), known);
+        sectors[out + 5u * stride] = trust / f32(max(valid, 1u));
+        sectors[out + 6u * stride] = flow.x * share;
+        sectors[out + 7u * stride] = flow.y * share;
+        sectors[out + 8u * stride] = flow.z * share;
+        sectors[out + 9u * stride] = along.x;
+        sectors[out + 10u * stride] = across.x;
+        sectors[out + 11u * stride] = across.y;
+        sectors[out + 12u * stride] = along.y;
+        sectors[out + 13u * stride] = across.z;
+        sectors[out + 14u * stride] = along.z;
+        sectors[out + 15u * stride] = error * share;
+    }
+}
+
+// Where a cell stands in cells and in looming, and how far apart the channels are there.
+fn place(cell: u32) -> vec3u {
+    let stride = (params.cell_columns + 3u) / 4u * 4u;
+    let row = cell / params.cell_columns;
+    let column = cell - row * params.cell_columns;
+    return vec3u(5u * row * stride + column, 4u * row * stride + column, stride);
+}
+
+// Bits that are in order where the numbers are.
+fn key(v: f32) -> u32 {
+    // Both zeros are one number.
+    let bits = bitcast<u32>(v + 0.0);
+    return select(bits | 0x80000000u, ~bits, bits >= 0x80000000u);
+}
+
+fn value(key: u32) -> f32 {
+    return bitcast<f32>(select(~key, key & 0x7fffffffu, key >= 0x80000000u));
+}

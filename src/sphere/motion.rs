@@ -1,0 +1,67 @@
+//! What is known of the camera's motion between two frames.
+
+use glam::{DMat3, DVec3};
+
+/// Values of a plan's `motion` buffer.
+pub(crate) const MOTION_LEN: usize = 16;
+
+/// What is known of the camera's motion from the frame before to this one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Takes a bearing in the camera's frame at the later exposure into its frame at the earlier one.
+    pub prev_from_cur: DMat3,
+    /// Which way the camera moves, in its frame at the later exposure.
+    pub heading: Heading,
+}
+
+/// Which way the camera moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heading {
+    /// A unit vector in the camera's frame (x to the right, y down, z forward).
+    pub direction: DVec3,
+    /// Standard error of the direction, in radians; anything over 1 is as good as unknown.
+    pub error_rad: f64,
+}
+
+impl Heading {
+    /// Nothing is known: straight ahead, give or take anything.
+    pub const UNKNOWN: Self = Self { direction: DVec3::Z, error_rad: 10.0 };
+}
+
+impl Motion {
+    /// No turn, and no heading that is known.
+    pub const UNKNOWN: Self = Self { prev_from_cur: DMat3::IDENTITY, heading: Heading::UNKNOWN };
+
+    /// The values of the `motion` buffer: the rows of `prev_from_cur − 1`, so that a small turn keeps all its digits, then
+    /// the heading and its error.
+    pub(crate) fn values(&self) -> [f32; MOTION_LEN] {
+        let rows = (self.prev_from_cur - DMat3::IDENTITY).transpose();
+        let mut values = [0.0; MOTION_LEN];
+        let heading = self.heading.direction.extend(self.heading.error_rad);
+        for (four, row) in values.chunks_exact_mut(4).zip(
+            [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.extend(0.0)).into_iter().chain([heading]),
+        ) {
+            four.copy_from_slice(&row.as_vec4().to_array());
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_hold_the_turn_less_the_identity() {
+        let motion = Motion {
+            prev_from_cur: DMat3::from_rotation_z(0.1),
+            heading: Heading { direction: DVec3::Y, error_rad: 0.25 },
+        };
+        let values = motion.values();
+        let (sin, cos) = 0.1_f64.sin_cos();
+        let expected = [cos - 1.0, -sin, 0.0, 0.0, sin, cos - 1.0].map(|v| v as f32);
+        assert_eq!(values[..6], expected);
+        assert_eq!(values[12..], [0.0, 1.0, 0.0, 0.25]);
+        assert_eq!(Motion::UNKNOWN.values()[..12], [0.0; 12]);
+    }
+}
