@@ -36,6 +36,7 @@ pub mod eval;
 pub mod flow;
 pub mod frame;
 pub mod gpu;
+pub mod imu;
 pub mod kernel;
 pub mod kernels;
 pub mod plan;
