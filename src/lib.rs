@@ -27,6 +27,7 @@
 //! With [`Backend::Gpu`] the same frames go through WGSL kernels on any GPU that `wgpu` reaches; a stated bound holds
 //! between the two (see [`kernels`] and `viewsphere crosscheck`). The layers are described in `ARCHITECTURE.md`.
 
+pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod cpu;

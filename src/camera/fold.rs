@@ -1,0 +1,128 @@
+//! How far from its axis a lens is one to one.
+//!
+//! The derivative of the lens map is symmetric: with p = (p2, p1) it is that of the radial part, whose eigenvalues are
+//! g = d(r q)/dr along the radius and q across it, plus 2 (p xᵀ + x pᵀ + (p·x) 1), whose eigenvalues are −6 |p| r at
+//! least. If it is positive definite on a disc, the map is the gradient of a strictly convex function there, and so one to
+//! one. The disc asked for is therefore the one where
+//!
+//! q − 6 |p| r > 0, g − 6 |p| r > 0, and the denominator of q is positive.
+//!
+//! The second is sharp, in the direction opposite to p. Times powers of the denominator all three are polynomials in r,
+//! and Bernstein's form shows whether one is positive on an interval, without a step between samples to fall through.
+
+use super::lens::Named;
+
+/// N D + 2 r² (N′ D − N D′) has the power 12 of r, and r D² the power 13.
+const TERMS: usize = 14;
+/// An interval is halved so many times at most. What is undecided then touches zero.
+const MAX_DEPTH: u32 = 40;
+/// The largest angle from the axis that a planar picture is followed to.
+const MAX_ANGLE_DEG: f64 = 89.9;
+
+/// Coefficients of 1, r, r², …
+type Polynomial = [f64; TERMS];
+
+/// Whether the lens is one to one on the disc of this radius.
+pub(super) fn is_one_to_one(lens: &Named, radius: f64) -> bool {
+    radius.is_finite() && conditions(lens).iter().all(|p| is_positive(p, radius))
+}
+
+/// The radius of the largest disc on which it is.
+pub(super) fn limit(lens: &Named) -> f64 {
+    let conditions = conditions(lens);
+    let holds = |radius: f64| conditions.iter().all(|p| is_positive(p, radius));
+    let (mut good, mut bad) = (0.0, MAX_ANGLE_DEG.to_radians().tan());
+    if holds(bad) {
+        return bad;
+    }
+    // Until there is no number between the two.
+    loop {
+        let middle = 0.5 * (good + bad);
+        if !(good < middle && middle < bad) {
+            return good;
+        }
+        *(if holds(middle) { &mut good } else { &mut bad }) = middle;
+    }
+}
+
+fn conditions(lens: &Named) -> [Polynomial; 3] {
+    let even = |[a, b, c]: [f64; 3]| place(&[1.0, a, b, c], 2);
+    let slope = |[a, b, c]: [f64; 3]| place(&[a, 2.0 * b, 3.0 * c], 2);
+    let (n, d) = (even(lens.numerator), even(lens.denominator));
+    let turn = minus(&times(&slope(lens.numerator), &d), &times(&n, &slope(lens.denominator)));
+    let radial = minus(&times(&n, &d), &times(&turn, &place(&[0.0, -2.0], 2)));
+    let tangential = place(&[0.0, 6.0 * lens.p1.hypot(lens.p2)], 1);
+    let across = minus(&n, &times(&tangential, &d));
+    [d, across, minus(&radial, &times(&tangential, &times(&d, &d)))]
+}
+
+/// Coefficients of every `step`-th power.
+fn place(values: &[f64], step: usize) -> Polynomial {
+    let mut result = [0.0; TERMS];
+    result.iter_mut().step_by(step).zip(values).for_each(|(r, v)| *r = *v);
+    result
+}
+
+fn minus(a: &Polynomial, b: &Polynomial) -> Polynomial {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// The product. Powers that have no place are those whose coefficients cancel.
+fn times(a: &Polynomial, b: &Polynomial) -> Polynomial {
+    std::array::from_fn(|i| (0..=i).map(|j| a[j] * b[i - j]).sum())
+}
+
+/// Whether a polynomial is positive from 0 to `radius`.
+fn is_positive(polynomial: &Polynomial, radius: f64) -> bool {
+    let Some(degree) = polynomial.iter().rposition(|c| *c != 0.0) else { return false };
+    let mut bernstein = [0.0; TERMS];
+    let mut power = 1.0;
+    for (i, c) in polynomial[..=degree].iter().enumerate() {
+        // (j over i) / (degree over i), from 1 at j = degree down.
+        let mut share = 1.0;
+        for j in (i..=degree).rev() {
+            bernstein[j] += c * power * share;
+            share *= (j - i) as f64 / (j as f64).max(1.0);
+        }
+        power *= radius;
+    }
+    bernstein_is_positive(&mut bernstein[..=degree], 0)
+}
+
+/// A polynomial in Bernstein's form lies between the smallest and the largest of its coefficients, and the first and the
+/// last of them are its values at the ends. What that leaves open is halved by de Casteljau's rule.
+fn bernstein_is_positive(coefficients: &mut [f64], depth: u32) -> bool {
+    let last = coefficients.len() - 1;
+    if coefficients.iter().all(|c| *c > 0.0) {
+        return true;
+    }
+    if !(coefficients[0] > 0.0 && coefficients[last] > 0.0 && depth < MAX_DEPTH) {
+        return false;
+    }
+    let mut left = [0.0; TERMS];
+    for (i, left) in left.iter_mut().enumerate().take(last + 1) {
+        *left = coefficients[0];
+        for j in 0..last - i {
+            coefficients[j] = 0.5 * (coefficients[j] + coefficients[j + 1]);
+        }
+    }
+    bernstein_is_positive(&mut left[..=last], depth + 1) && bernstein_is_positive(coefficients, depth + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_is_positive_up_to_its_first_root() {
+        // (1 − r) (2 − r) (3 − r), and (r − 1)² + 10⁻⁶, which comes close to a root.
+        let cubic = place(&[6.0, -11.0, 6.0, -1.0], 1);
+        assert!(is_positive(&cubic, 0.0) && is_positive(&cubic, 0.999_999));
+        assert!(!is_positive(&cubic, 1.0) && !is_positive(&cubic, 2.5) && !is_positive(&cubic, 4.0));
+        let near = place(&[1.0 + 1e-6, -2.0, 1.0], 1);
+        assert!(is_positive(&near, 5.0) && is_positive(&near, 1e3));
+        let touching = place(&[1.0, -2.0, 1.0], 1);
+        assert!(is_positive(&touching, 0.9) && !is_positive(&touching, 5.0));
+        assert!(!is_positive(&[0.0; TERMS], 1.0) && !is_positive(&[f64::NAN; TERMS], 1.0));
+    }
+}
