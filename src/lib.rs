@@ -37,6 +37,7 @@ pub mod eval;
 pub mod flow;
 pub mod frame;
 pub mod gpu;
+pub mod imu;
 pub mod kernel;
 pub mod kernels;
 pub mod plan;
