@@ -8,8 +8,8 @@ use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
     ALL, area, binomial, cells, certain_expansion_x, certain_expansion_y, certain_matrices, compare,
-    confidence, expansion_x, expansion_y, looming, luma, matrices, resample_x, resample_y, residual, sectors,
-    solve, tangent, trust, upsample, weigh, window_y,
+    confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices, prime, remap, resample_x,
+    resample_y, residual, sectors, solve, tangent, trust, upsample, weigh, window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -66,6 +66,15 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
     (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
     (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
+    (&lens_map::KERNEL, "a.z * squares.y", "a.z * squares.x"),
+    (&lens_map::KERNEL, "+ r2 * b.x", "- r2 * b.x"),
+    (&lens_map::KERNEL, "+ r2 * b.w", ""),
+    (&lens_map::KERNEL, "dot(ideal, ideal) < params.limit", "params.limit > 0.0"),
+    (&lens_map::KERNEL, "min(place.y, last.y - place.y)", "min(place.y, place.y)"),
+    (&lens_map::KERNEL, "max(params.margin, 0.5)", "0.5"),
+    (&remap::KERNEL, "u32(y)", "u32(y + 0.01)"),
+    (&remap::KERNEL, "x - f32(left)", "x"),
+    (&prime::KERNEL, " - current.xy * moved.z", ""),
     (&tangent::KERNEL, "-shift - (previous - unturned)", "-shift"),
     (&tangent::KERNEL, "r.y * motion[1].xyz", "r.y * motion[2].xyz"),
     (&tangent::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),

@@ -1,16 +1,5 @@
 
-// Bearings on the view sphere, and how the camera turned between two frames.
-// A ray is (x, y, 1) of the ideal pinhole; motion holds the rows of prev_from_cur − 1, then the direction of motion.
-
-// A ray of the current camera as the previous camera sees it.
-fn turned(r: vec3f) -> vec3f {
-    return r + vec3f(dot(motion[0].xyz, r), dot(motion[1].xyz, r), dot(motion[2].xyz, r));
-}
-
-// A ray of the previous camera as the current camera sees it.
-fn turned_back(r: vec3f) -> vec3f {
-    return r + r.x * motion[0].xyz + r.y * motion[1].xyz + r.z * motion[2].xyz;
-}
+// Bearings on the view sphere. A ray is (x, y, 1) of the ideal pinhole.
 
 struct Sighting {
     midpoint: vec3f, // unit bearing half-way

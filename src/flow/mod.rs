@@ -4,4 +4,5 @@ mod farneback;
 mod levels;
 
 pub use farneback::{Farneback, Window};
+pub(crate) use farneback::{Parts, gray_step};
 pub use levels::{Level, levels};

@@ -34,7 +34,7 @@ params! {
 }
 
 kernel!(
-    "cells" + ["sphere"],
+    "cells" + ["sphere", "turn"],
     reference(Params; flow, motion, certainty, trust) -> (cells),
     cases: cases,
     tolerance: Tolerance {

@@ -46,6 +46,25 @@ impl Pinhole {
         let difference = std::array::from_fn(|i| -shift[i] - turned[i]);
         (sighting(current, previous, difference), known)
     }
+
+    /// The ray of a pixel as the previous camera sees it.
+    #[inline(always)]
+    pub(super) fn turned_ray(self, motion: &[[f32; 4]; 4], [x, y]: [f32; 2]) -> [f32; 3] {
+        let current = [(x - self.centre[0]) / self.focal[0], (y - self.centre[1]) / self.focal[1], 1.0];
+        std::array::from_fn(|i| current[i] + dot([motion[i][0], motion[i][1], motion[i][2]], current))
+    }
+
+    /// How far from pixel (`x`, `y`) the previous camera showed what lies in its direction now.
+    #[inline(always)]
+    pub(super) fn turn(self, motion: &[[f32; 4]; 4], [x, y]: [f32; 2]) -> [f32; 2] {
+        let current = [(x - self.centre[0]) / self.focal[0], (y - self.centre[1]) / self.focal[1], 1.0];
+        let moved: [f32; 3] =
+            std::array::from_fn(|i| dot([motion[i][0], motion[i][1], motion[i][2]], current));
+        let z = 1.0 + moved[2];
+        // Written so that no two large numbers are subtracted.
+        let shift = |i: usize| self.focal[i] * (moved[i] - current[i] * moved[2]) / z;
+        if z > 0.01 { [shift(0), shift(1)] } else { [0.0; 2] }
+    }
 }
 
 /// What was seen at ray `b` and is seen at ray `a` now moved along the arc from b to a. `difference` is a − b, so that a

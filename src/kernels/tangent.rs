@@ -26,7 +26,7 @@ params! {
 }
 
 kernel!(
-    "tangent" + ["sphere"],
+    "tangent" + ["sphere", "turn"],
     reference(Params; flow, motion) -> (tangent),
     cases: cases,
     tolerance: Tolerance {

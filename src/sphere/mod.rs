@@ -1,6 +1,21 @@
-//! From pixels to the view sphere.
+//! From pixels to the view sphere: bearings, the flow on the unit sphere with the camera's turn taken out, how fast what
+//! is seen comes nearer, and sectors that sum it up.
+//!
+//! All is in the camera's frame at the later of two exposures: x to the right, y down, z forward.
 
+mod eigen;
+mod grid;
+mod heading;
 mod motion;
+mod plan;
+mod sectors;
+mod view;
 
+pub use grid::{Cells, Grid, angles_rad, bearing};
+pub use heading::HeadingFilter;
 pub(crate) use motion::MOTION_LEN;
 pub use motion::{Heading, Motion};
+pub use plan::Fields;
+pub(crate) use plan::{Eye, plan};
+pub use sectors::{Sector, Sectors};
+pub use view::{Derotation, View};

@@ -1,0 +1,171 @@
+//! Which way the camera moves, from the flow itself.
+
+use glam::{DMat3, DVec3};
+
+use super::eigen::symmetric_eigen;
+use super::motion::Heading;
+use super::sectors::Sectors;
+
+/// How much of what the frames before said is kept from frame to frame.
+const MEMORY: f64 = 0.8;
+/// Rounds of weighing the sectors by how well they fit.
+const ROUNDS: usize = 8;
+/// How far the middle one of the moment's axes must stand out of the noise.
+const LEAST_CONTRAST: f64 = 3.0;
+/// Errors that all sectors have in common, in radians.
+const FLOOR_RAD: f64 = 0.01;
+/// Sectors whose errors are alike count as one.
+const ALIKE: f64 = 4.0;
+
+/// Estimates the direction of motion over the last frames.
+///
+/// The flow F at a bearing p that comes of moving along v lies in the plane of p and v, so v is normal to every `p × F`:
+/// it is the axis in which `Σ w (p × F)(p × F)ᵀ` is smallest. Sectors that do not fit, where something else moves, lose
+/// weight. Of the two directions of the axis it is the one that the flow leads away from.
+#[derive(Clone, Debug)]
+pub struct HeadingFilter {
+    moment: DMat3,
+    /// Sectors that it is made of.
+    sectors: f64,
+}
+
+impl Default for HeadingFilter {
+    fn default() -> Self {
+        Self { moment: DMat3::ZERO, sectors: 0.0 }
+    }
+}
+
+impl HeadingFilter {
+    /// Forgets everything.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The direction of motion in the camera's frame at the later exposure, from this pair and those before.
+    pub fn update(&mut self, sectors: &Sectors, prev_from_cur: &DMat3) -> Heading {
+        let kept = MEMORY * (prev_from_cur.transpose() * self.moment * *prev_from_cur);
+        // A sector's say is bounded: however fast something moves by itself, it is one among many.
+        let traces = sectors.moments.iter().map(trace);
+        let usual = median(traces.filter(|trace| *trace > 0.0)).unwrap_or(1.0);
+        let moments: Vec<DMat3> = (sectors.moments.iter())
+            .filter(|moment| trace(moment) > 0.0)
+            .map(|moment| *moment * (trace(moment) + usual).recip())
+            .collect();
+        let mut sum = moments.iter().fold(kept, |sum, moment| sum + *moment);
+        for _ in 0..ROUNDS {
+            let (values, axes) = symmetric_eigen(&sum);
+            if !(values[2] > 0.0) {
+                return Heading::UNKNOWN;
+            }
+            let misfit = |moment: &DMat3| axes[0].dot(*moment * axes[0]) / trace(moment).max(1e-30);
+            let typical = median(moments.iter().map(misfit)).map_or(1.0, |median| median.max(1e-6));
+            // Geman and McClure's weights: what fits far worse than most counts for nothing.
+            sum = moments.iter().fold(kept, |sum, moment| {
+                let excess = misfit(moment) / (4.0 * typical);
+                sum + *moment * (1.0 + excess * excess).recip()
+            });
+        }
+        self.moment = sum;
+        self.sectors = MEMORY * self.sectors + moments.len() as f64;
+        let (values, axes) = symmetric_eigen(&sum);
+        if !(values[1] > LEAST_CONTRAST * values[0]) {
+            return Heading::UNKNOWN;
+        }
+        let independent = (self.sectors / ALIKE).max(1.0);
+        let error_rad = (values[0] / (values[1] - values[0]) / independent).sqrt().hypot(FLOOR_RAD);
+        Heading { direction: leading(axes[0], sectors), error_rad }
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+fn trace(m: &DMat3) -> f64 {
+    m.x_axis.x + m.y_axis.y + m.z_axis.z
+}
+
+/// The one of an axis's directions that the flow leads away from.
+fn leading(axis: DVec3, sectors: &Sectors) -> DVec3 {
+    let grid = sectors.grid;
+    let along: f64 = (sectors.sectors.iter().enumerate())
+        .map(|(i, sector)| {
+            let p = grid.bearing(i % grid.columns, i / grid.columns);
+            let expected = p * p.dot(axis) - axis;
+            sector.coverage * sector.confidence * sector.flow_rad_s.dot(expected)
+        })
+        .sum();
+    if along < 0.0 { -axis } else { axis }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sphere::Grid;
+
+    /// Sectors as a static world of random depths gives them, one of them with something that moves by itself.
+    fn sectors(v: DVec3, wrong: bool) -> Sectors {
+        let grid = Grid { columns: 24, rows: 9, azimuth_rad: [-0.8, 0.8], elevation_rad: [0.6, -0.6] };
+        let mut sectors = Sectors::unknown(grid);
+        sectors.interval_s = 1.0;
+        let mut random = crate::kernels::cases::Random::new(5);
+        for i in 0..grid.len() {
+            let p = grid.bearing(i % 24, i / 24);
+            let mut flow = (0.01 + 0.05 * f64::from(random.next())) * (p * p.dot(v) - v);
+            let noise = DVec3::new(random.next().into(), random.next().into(), random.next().into()) - 0.5;
+            flow += 4e-4 * (noise - p * p.dot(noise));
+            if wrong && i % 24 > 20 {
+                flow = 0.05 * p.cross(DVec3::X);
+            }
+            let normal = p.cross(flow);
+            sectors.moments[i] =
+                20.0 * DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
+            sectors.sectors[i].coverage = 1.0;
+            sectors.sectors[i].confidence = 1.0;
+            sectors.sectors[i].flow_rad_s = flow;
+        }
+        sectors
+    }
+
+    #[test]
+    fn the_direction_is_found_also_beside_the_axis_and_backwards() {
+        for v in [DVec3::Z, DVec3::new(0.3, -0.1, 0.9), DVec3::new(-0.8, 0.1, 0.2), -DVec3::Z] {
+            let v = v.normalize();
+            let found = HeadingFilter::default().update(&sectors(v, false), &DMat3::IDENTITY);
+            assert!(found.direction.angle_between(v) < 0.02, "{found:?} for {v}");
+            assert!(found.error_rad < 0.05, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn what_moves_by_itself_does_not_mislead() {
+        let v = DVec3::new(0.1, 0.05, 1.0).normalize();
+        let found = HeadingFilter::default().update(&sectors(v, true), &DMat3::IDENTITY);
+        assert!(found.direction.angle_between(v) < 0.05, "{found:?}");
+    }
+
+    #[test]
+    fn without_motion_nothing_is_known() {
+        let mut still = sectors(DVec3::Z, false);
+        still.moments.iter_mut().for_each(|moment| *moment = DMat3::ZERO);
+        assert_eq!(HeadingFilter::default().update(&still, &DMat3::IDENTITY), Heading::UNKNOWN);
+        still.moments.iter_mut().for_each(|moment| *moment = 1e-8 * DMat3::IDENTITY);
+        assert_eq!(HeadingFilter::default().update(&still, &DMat3::IDENTITY), Heading::UNKNOWN);
+    }
+
+    #[test]
+    fn what_was_known_turns_with_the_camera() {
+        let mut filter = HeadingFilter::default();
+        let v = DVec3::new(0.2, 0.0, 1.0).normalize();
+        filter.update(&sectors(v, false), &DMat3::IDENTITY);
+        // The camera turns right by 0.2: what was ahead is now to the left.
+        let prev_from_cur = DMat3::from_rotation_y(0.2);
+        let mut nothing = sectors(v, false);
+        nothing.moments.iter_mut().for_each(|moment| *moment = DMat3::ZERO);
+        let turned = filter.update(&nothing, &prev_from_cur).direction;
+        let expected = prev_from_cur.transpose() * v;
+        assert!(turned.angle_between(expected).min(turned.angle_between(-expected)) < 0.02, "{turned}");
+    }
+}
