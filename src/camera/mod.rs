@@ -9,7 +9,7 @@ mod lens;
 mod pose;
 mod view;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 pub use lens::Lens;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
@@ -57,6 +57,12 @@ impl Camera {
         let [x, y] = self.lens.distort(ideal);
         let pixel = [self.f_u * x + self.u_0, self.f_v * y + self.v_0];
         pixel.iter().all(|c| c.is_finite()).then_some(pixel)
+    }
+
+    /// Where this camera shows what another one, turned against it, shows at a pixel: the map of the kernel
+    /// [`crate::kernels::lens_map`], in `f64`.
+    pub fn place_of(&self, other: &Self, this_from_other: &DMat3, pixel: [f64; 2]) -> Option<[f64; 2]> {
+        self.project(*this_from_other * other.ray(pixel)?)
     }
 }
 
