@@ -1,13 +1,17 @@
 
-// Brown–Conrady lenses with a rational radial part: where the lens puts what an ideal pinhole sees at (x, y).
-// lens_a holds k1 k2 p1 p2, lens_b k3 k4 k5 k6.
+// The lens: Brown 1971 with a rational radial factor, in OpenCV's order of the coefficients.
 
-fn distort(ideal: vec2f) -> vec2f {
-    let a = params.lens_a;
-    let b = params.lens_b;
-    let r2 = dot(ideal, ideal);
-    let q = (1.0 + r2 * (a.x + r2 * (a.y + r2 * b.x))) / (1.0 + r2 * (b.y + r2 * (b.z + r2 * b.w)));
-    let xy = 2.0 * ideal.x * ideal.y;
-    let squares = r2 + 2.0 * ideal * ideal;
-    return q * ideal + vec2f(a.z * xy + a.w * squares.x, a.z * squares.y + a.w * xy);
+// Where the lens shows what an ideal pinhole would show at (x, y), both at a distance of 1.
+// a: k1 k2 p1 p2, b: k3 k4 k5 k6.
+fn distort(ideal: vec2f, a: vec4f, b: vec4f) -> vec2f {
+    let x = ideal.x;
+    let y = ideal.y;
+    let s = x * x + y * y;
+    let numerator = 1.0 + s * (a.x + s * (a.y + s * b.x));
+    let denominator = 1.0 + s * (b.y + s * (b.z + s * b.w));
+    let q = numerator / denominator;
+    return vec2f(
+        x * q + 2.0 * a.z * x * y + a.w * (s + 2.0 * x * x),
+        y * q + a.z * (s + 2.0 * y * y) + 2.0 * a.w * x * y,
+    );
 }

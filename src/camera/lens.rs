@@ -75,7 +75,8 @@ impl Lens {
     }
 
     /// Whether no two places within this distance of the axis are shown at the same place, none is mirrored, and none
-    /// has a factor q whose denominator is not positive. `false` for what is not a finite number.
+    /// has a factor q whose denominator is not positive, or so close to a root that the formula stretches the picture
+    /// more than four times. `false` for what is not a finite number.
     pub fn is_one_to_one_to(&self, radius: f64) -> bool {
         *self == Self::NONE && radius.is_finite() || fold::is_one_to_one(&self.named(), radius)
     }
@@ -84,6 +85,11 @@ impl Lens {
     /// if it is so further on.
     pub fn radius_limit(&self) -> f64 {
         fold::limit(&self.named())
+    }
+
+    /// The distance from the axis of the denominator's first root, if there is one within 89.9°.
+    pub(super) fn denominator_root(&self) -> Option<f64> {
+        fold::denominator_root(&self.named())
     }
 
     pub(super) fn named(&self) -> Named {

@@ -6,6 +6,7 @@
 
 pub mod cases;
 pub mod compare;
+mod lens;
 mod pair;
 pub(crate) mod rows;
 mod sighting;

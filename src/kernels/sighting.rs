@@ -11,6 +11,12 @@ pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// A ray of the current camera as the previous one sees it.
+#[inline(always)]
+pub(super) fn turned(motion: &[[f32; 4]; 4], r: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| r[i] + dot([motion[i][0], motion[i][1], motion[i][2]], r))
+}
+
 /// A ray of the previous camera as the current one sees it, less the ray.
 #[inline(always)]
 pub(super) fn turn_back(motion: &[[f32; 4]; 4], r: [f32; 3]) -> [f32; 3] {
@@ -45,13 +51,6 @@ impl Pinhole {
         let previous = std::array::from_fn(|i| unturned[i] + turned[i]);
         let difference = std::array::from_fn(|i| -shift[i] - turned[i]);
         (sighting(current, previous, difference), known)
-    }
-
-    /// The ray of a pixel as the previous camera sees it.
-    #[inline(always)]
-    pub(super) fn turned_ray(self, motion: &[[f32; 4]; 4], [x, y]: [f32; 2]) -> [f32; 3] {
-        let current = [(x - self.centre[0]) / self.focal[0], (y - self.centre[1]) / self.focal[1], 1.0];
-        std::array::from_fn(|i| current[i] + dot([motion[i][0], motion[i][1], motion[i][2]], current))
     }
 
     /// How far from pixel (`x`, `y`) the previous camera showed what lies in its direction now.

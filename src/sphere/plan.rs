@@ -108,7 +108,7 @@ impl<'a> Front<'a> {
         Some(Step::new(
             &lens_map::KERNEL,
             label,
-            lens_map::Params::new(self.eye.ideal, self.eye.raw, self.margin),
+            lens_map::Params::new(self.eye.ideal, self.eye.raw).with_margin(self.margin),
             &[motion, self.mask?],
             &[(map.places, Shape::planar(ideal, 2)), (map.certainty, Shape::planar(ideal, 1))],
         ))
