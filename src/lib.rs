@@ -40,8 +40,10 @@ pub mod gpu;
 pub mod imu;
 pub mod kernel;
 pub mod kernels;
+pub mod pipeline;
 pub mod plan;
 pub mod sphere;
 
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};
+pub use pipeline::{Cue, Pipeline, PipelineConfig};

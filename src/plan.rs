@@ -105,6 +105,8 @@ pub struct Step {
 pub struct Plan {
     /// The frames' size.
     pub size: Size,
+    /// Size of the flow and the confidence.
+    pub flow_size: Size,
     /// The buffers.
     pub bufs: Vec<Buf>,
     /// What is computed once, before the first frame.

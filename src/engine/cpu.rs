@@ -118,7 +118,7 @@ impl CpuStream {
         if !job.pair {
             return;
         }
-        let size = self.layout.size;
+        let size = self.layout.flow_size;
         let results = &mut self.slots[slot].results;
         if self.layout.flow > 0 {
             layout::unpack_flow(self.exec.buf(plan.flow[job.parity]), size, &mut results.flow.data);

@@ -146,8 +146,8 @@ impl GpuStream {
                 let values: &[f32] = bytemuck::cast_slice(&view[..4 * layout.readback()]);
                 let (flow, rest) = values.split_at(layout.flow);
                 let (confidence, mut fields) = rest.split_at(layout.confidence);
-                layout::unpack_flow(flow, layout.size, &mut results.flow.data);
-                layout::unpack_plane(confidence, layout.size, &mut results.confidence.data);
+                layout::unpack_flow(flow, layout.flow_size, &mut results.flow.data);
+                layout::unpack_plane(confidence, layout.flow_size, &mut results.confidence.data);
                 for field in &mut results.fields {
                     let values;
                     (values, fields) = fields.split_at(field.len());

@@ -13,6 +13,8 @@ use crate::sphere::MOTION_LEN;
 #[derive(Clone, Copy)]
 pub(super) struct Layout {
     pub(super) size: Size,
+    /// Size of the flow and the confidence.
+    pub(super) flow_size: Size,
     pub(super) format: PixelFormat,
     /// One row of the frame.
     pub(super) row: usize,
@@ -35,13 +37,15 @@ impl Layout {
     pub(super) fn new(plan: &Plan, config: &super::Config) -> Self {
         let size = plan.size;
         let when = |wanted: bool, shape: Shape| if wanted { shape.len() } else { 0 };
-        let (plane, field) = (Shape::planar(size, 1), Shape::planar(size, 2));
+        let plane = Shape::planar(plan.flow_size, 1);
+        let field = Shape::planar(plan.flow_size, 2);
         Self {
             size,
+            flow_size: plan.flow_size,
             format: config.format,
             row: luma::row_words(size, config.format),
             frame: plan.buf(plan.frame).len,
-            certainty: when(plan.certainty.is_some(), plane),
+            certainty: when(plan.certainty.is_some(), Shape::planar(size, 1)),
             initial: when(plan.initial_flow, field),
             motion: plan.motion.map_or(0, |_| MOTION_LEN),
             flow: when(config.read_flow, field),

@@ -185,6 +185,19 @@ impl Engine {
         Ok(Taken { frame: ticket.frame, previous, slot, pair: job.pair, latency })
     }
 
+    /// Waits for a frame without taking it. One that is late is given up.
+    pub(crate) fn finish(&mut self, ticket: Ticket) -> Result<()> {
+        self.find(ticket)?;
+        let flight = self.flights.place(ticket.frame).map(|place| &self.flights.list[place]);
+        let (due, submitted) = flight.map_or((None, Instant::now()), |flight| (flight.due, flight.submitted));
+        let done = self.bring(ticket.frame, true, due);
+        if self.recovered(done)? {
+            return Ok(());
+        }
+        self.give_up(ticket.frame);
+        Err(self.late(ticket.frame, submitted.elapsed()))
+    }
+
     fn late(&mut self, frame: u64, waited: Duration) -> Error {
         self.stats.timeouts += 1;
         let ms = |time: Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);

@@ -42,7 +42,7 @@ pub(super) struct Results {
 
 impl Results {
     pub(super) fn new(layout: &Layout, plan: &Plan) -> Self {
-        let size = layout.size;
+        let size = layout.flow_size;
         let pixels = |wanted: usize| if wanted > 0 { size.pixels() } else { 0 };
         Self {
             flow: FlowField { size, data: vec![[0.0; 2]; pixels(layout.flow)] },

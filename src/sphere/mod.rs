@@ -3,14 +3,17 @@
 //!
 //! All is in the camera's frame at the later of two exposures: x to the right, y down, z forward.
 
+mod alarm;
+mod config;
 mod eigen;
 mod grid;
 mod heading;
 mod motion;
 mod plan;
 mod sectors;
-mod view;
 
+pub use alarm::{Alarm, AlarmFilter, Threat};
+pub use config::{Derotation, Sphere};
 pub use grid::{Cells, Grid, angles_rad, bearing};
 pub use heading::HeadingFilter;
 pub(crate) use motion::MOTION_LEN;
@@ -18,4 +21,3 @@ pub use motion::{Heading, Motion};
 pub use plan::Fields;
 pub(crate) use plan::{Eye, plan};
 pub use sectors::{Sector, Sectors};
-pub use view::{Derotation, View};

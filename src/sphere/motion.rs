@@ -26,6 +26,11 @@ pub struct Heading {
 impl Heading {
     /// Nothing is known: straight ahead, give or take anything.
     pub const UNKNOWN: Self = Self { direction: DVec3::Z, error_rad: 10.0 };
+
+    /// Whether the direction is known at all.
+    pub fn is_known(&self) -> bool {
+        self.error_rad <= 1.0
+    }
 }
 
 impl Motion {

@@ -1,8 +1,8 @@
 //! The plan from a frame to the sectors of the view.
 
+use super::config::{Derotation, Sphere};
 use super::grid::{Cells, Grid};
 use super::motion::MOTION_LEN;
-use super::view::{Derotation, View};
 use crate::camera::{Camera, Lens};
 use crate::error::{Error, Result};
 use crate::flow::{Farneback, Parts, gray_step};
@@ -62,7 +62,7 @@ struct Map {
 }
 
 impl<'a> Front<'a> {
-    fn new(bufs: &mut Bufs, eye: Eye<'a>, view: &View, format: PixelFormat) -> Self {
+    fn new(bufs: &mut Bufs, eye: Eye<'a>, view: &Sphere, format: PixelFormat) -> Self {
         let (raw, ideal) = (eye.raw.size, eye.ideal.size);
         let turns = eye.gyro && view.derotation == Derotation::Before;
         let plain = eye.raw == eye.ideal && eye.raw.lens == Lens::NONE && eye.mask.is_none();
@@ -85,10 +85,7 @@ impl<'a> Front<'a> {
                 None => bufs.constant("equal certainty", vec![1.0; Shape::planar(ideal, 1).len()]),
             },
             mask: (undistort.is_some() || turns).then(|| {
-                let mask = eye
-                    .mask
-                    .map(|mask| padded(mask))
-                    .unwrap_or_else(|| vec![1.0; Shape::planar(raw, 1).len()]);
+                let mask = eye.mask.map(padded).unwrap_or_else(|| vec![1.0; Shape::planar(raw, 1).len()]);
                 bufs.constant("mask", mask)
             }),
             map: undistort,
@@ -155,7 +152,7 @@ fn padded(plane: &Plane) -> Vec<f32> {
 /// [`Error::Parameter`] for a parameter that is out of range, [`Error::SizeMismatch`] for a mask of another size.
 pub(crate) fn plan(
     flow: &Farneback,
-    view: &View,
+    view: &Sphere,
     eye: Eye<'_>,
     format: PixelFormat,
     fields: Fields,
@@ -225,6 +222,7 @@ pub(crate) fn plan(
     });
     let plan = Plan {
         size: eye.raw.size,
+        flow_size: size,
         setup: front.setup(),
         ingest,
         pair,
@@ -257,7 +255,7 @@ fn pinhole(camera: &Camera) -> tangent::Params {
 /// From the flow to the sectors.
 struct Back<'a> {
     ideal: &'a Camera,
-    view: &'a View,
+    view: &'a Sphere,
     cells_at: &'a Cells,
     grid: [u32; 2],
     trust: BufId,
@@ -273,7 +271,7 @@ struct Back<'a> {
 impl<'a> Back<'a> {
     fn new(
         bufs: &mut Bufs,
-        view: &'a View,
+        view: &'a Sphere,
         ideal: &'a Camera,
         cells: &'a Cells,
         grid: &Grid,
@@ -321,7 +319,7 @@ impl<'a> Back<'a> {
     ) {
         let Size { width, height } = self.ideal.size;
         let Size { width: columns, height: rows } = self.cells_at.size;
-        let View { cell, step, window, .. } = *self.view;
+        let Sphere { cell, step, window, .. } = *self.view;
         if let Some(tangent) = self.tangent {
             steps.push(Step::new(&tangent::KERNEL, "sphere", pinhole(self.ideal), &[flow, turn], &[tangent]));
         }

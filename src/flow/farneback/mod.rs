@@ -124,6 +124,7 @@ impl Farneback {
         let parts = Parts::new(&mut bufs, self, size);
         let plan = Plan {
             size,
+            flow_size: size,
             setup: Vec::new(),
             frame,
             certainty,

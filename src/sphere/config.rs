@@ -17,7 +17,7 @@ pub enum Derotation {
 
 /// How the flow on the view sphere is summed up.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View {
+pub struct Sphere {
     /// Where the camera's turn is taken out.
     pub derotation: Derotation,
     /// Pixels of the side of the cells that the flow is averaged over, 1 to 64. Farnebäck's errors are alike over about
@@ -40,7 +40,7 @@ pub struct View {
     pub margin_px: f64,
 }
 
-impl Default for View {
+impl Default for Sphere {
     fn default() -> Self {
         Self {
             derotation: Derotation::default(),
@@ -56,7 +56,7 @@ impl Default for View {
     }
 }
 
-impl View {
+impl Sphere {
     /// Checks every parameter's range.
     ///
     /// # Errors

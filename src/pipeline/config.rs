@@ -1,0 +1,93 @@
+//! What a pipeline is made of and told.
+
+use crate::camera::{Camera, Lens, View};
+use crate::engine::Config;
+use crate::error::{Error, Result};
+use crate::frame::Plane;
+use crate::imu::GyroConfig;
+use crate::sphere::{Alarm, Fields, Sphere};
+
+/// How a [`Pipeline`](super::Pipeline) works.
+#[derive(Clone, Debug)]
+pub struct PipelineConfig {
+    /// The estimator, the frames' format, and how the stream is run. Frames are dropped before they are submitted, if at
+    /// all: [`Config::drop_oldest`] and [`Config::warm_start`] must be off. With
+    /// [`Farneback::certainty`](crate::flow::Farneback::certainty) what the frame does not show, and what the mask
+    /// hides, is left out of the expansions too, at about half as much again of the time.
+    pub engine: Config,
+    /// How the flow on the view sphere is summed up.
+    pub sphere: Sphere,
+    /// The pinhole whose pictures the flow is computed of, of any size. None for what the camera's own frame shows
+    /// without a gap, in its size.
+    pub ideal: Option<Camera>,
+    /// How far each pixel of the raw frame is to be trusted, 0 to 1: 0 where the aircraft itself is seen. None for 1.
+    pub mask: Option<Plane>,
+    /// The gyro. None if there is none: then the camera's turn stays in the flow.
+    pub gyro: Option<GyroConfig>,
+    /// What is read beside the sectors.
+    pub fields: Fields,
+    /// What is a threat.
+    pub alarm: Alarm,
+    /// Frames further apart make no pair, in seconds, above 0.
+    pub max_interval_s: f64,
+    /// A cue is invalid if less of the view is trusted, 0 to 1.
+    pub least_coverage: f64,
+}
+
+impl Default for PipelineConfig {
+    fn default() -> Self {
+        Self {
+            engine: Config { read_flow: false, read_confidence: false, ..Config::default() },
+            sphere: Sphere::default(),
+            ideal: None,
+            mask: None,
+            gyro: None,
+            fields: Fields::default(),
+            alarm: Alarm::default(),
+            max_interval_s: 0.25,
+            least_coverage: 0.1,
+        }
+    }
+}
+
+impl PipelineConfig {
+    /// Checks every parameter's range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], naming the first one that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        self.engine.validate()?;
+        self.sphere.validate()?;
+        self.alarm.validate()?;
+        if let Some(gyro) = &self.gyro {
+            gyro.validate()?;
+        }
+        for (name, on) in [
+            ("drop_oldest", self.engine.drop_oldest),
+            ("warm_start", self.engine.warm_start),
+            ("initial_flow", self.engine.flow.initial_flow),
+            ("confidence", self.engine.flow.confidence),
+        ] {
+            if on {
+                return Err(Error::parameter(name, true, "false in a pipeline"));
+            }
+        }
+        if !(self.max_interval_s > 0.0 && self.max_interval_s.is_finite()) {
+            return Err(Error::parameter("max_interval_s", self.max_interval_s, "above 0 and finite"));
+        }
+        if !(0.0..=1.0).contains(&self.least_coverage) {
+            return Err(Error::parameter("least_coverage", self.least_coverage, "0 to 1"));
+        }
+        Ok(())
+    }
+
+    /// The pinhole whose pictures the flow is computed of.
+    pub(super) fn ideal(&self, camera: &Camera) -> Result<Camera> {
+        match &self.ideal {
+            None if camera.lens == Lens::NONE => Ok(*camera),
+            None => camera.ideal(camera.size, View::CropToValid),
+            Some(ideal) if ideal.lens == Lens::NONE => Ok(*ideal),
+            Some(_) => Err(Error::parameter("ideal", "a camera with a lens", "one without")),
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! From raw frames and a gyro to what will be met where and when.
+
+mod config;
+mod cue;
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use glam::DMat3;
+
+pub use config::PipelineConfig;
+pub use cue::{Cue, Invalid};
+
+use crate::camera::Camera;
+use crate::engine::{Backend, Engine, Extras, Ticket};
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::imu::{Gyro, GyroSample};
+use crate::sphere::{AlarmFilter, Cells, Eye, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
+
+/// Frames of a camera go in, each with its time, and the gyro's samples; a [`Cue`] a frame comes out.
+///
+/// All per-pixel work is one submission a frame, and only what is asked for is read back. A frame's gyro samples must be
+/// pushed before it is submitted, up to one after the middle of its exposure.
+pub struct Pipeline {
+    engine: Engine,
+    config: PipelineConfig,
+    ideal: Camera,
+    cells: Cells,
+    gyro: Option<Gyro>,
+    last: Option<Last>,
+    waiting: VecDeque<Waiting>,
+    sectors: Sectors,
+    heading: Heading,
+    /// The time of the frame that the heading is known of.
+    heading_time_s: f64,
+    given: Option<Heading>,
+    headings: HeadingFilter,
+    alarms: AlarmFilter,
+}
+
+/// The frame that was submitted last.
+#[derive(Clone, Copy)]
+struct Last {
+    frame: u64,
+    time_s: f64,
+}
+
+/// What is known of a frame that is being computed.
+struct Waiting {
+    frame: u64,
+    time_s: f64,
+    before: Option<Last>,
+    turn: Option<DMat3>,
+    fault: Option<Invalid>,
+    submitted: Instant,
+}
+
+impl Waiting {
+    fn interval_s(&self) -> Option<f64> {
+        self.before.map(|before| self.time_s - before.time_s)
+    }
+}
+
+impl Pipeline {
+    /// Makes a pipeline for the frames of a camera.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a parameter or camera that is out of range, [`Error::SizeMismatch`] for a mask of another
+    /// size than the camera's; and as [`Engine::new`].
+    pub fn new(backend: Backend, camera: &Camera, config: &PipelineConfig) -> Result<Self> {
+        config.validate()?;
+        camera.validate()?;
+        let ideal = config.ideal(camera)?;
+        ideal.validate()?;
+        let eye = Eye { raw: camera, ideal: &ideal, mask: config.mask.as_ref(), gyro: config.gyro.is_some() };
+        let (plan, cells, grid) =
+            plan(&config.engine.flow, &config.sphere, eye, config.engine.format, config.fields)?;
+        Ok(Self {
+            engine: Engine::with_plan(backend, plan, &config.engine)?,
+            ideal,
+            cells,
+            gyro: config.gyro.map(Gyro::new).transpose()?,
+            last: None,
+            waiting: VecDeque::with_capacity(config.engine.in_flight),
+            sectors: Sectors::unknown(grid),
+            heading: Heading::UNKNOWN,
+            heading_time_s: f64::NAN,
+            given: None,
+            headings: HeadingFilter::default(),
+            alarms: AlarmFilter::new(config.alarm, &grid)?,
+            config: config.clone(),
+        })
+    }
+
+    /// Takes a sample of the gyro. Without [`PipelineConfig::gyro`] it is not looked at.
+    pub fn push_gyro(&mut self, sample: GyroSample) {
+        if let Some(gyro) = &mut self.gyro {
+            gyro.push(sample);
+        }
+    }
+
+    /// Says which way the camera moves in its own frame at the frame that is submitted next, from a wind vane or from
+    /// satellites: better than what the flow alone tells. It holds until it is set again; none for the flow's own.
+    pub fn set_heading(&mut self, heading: Option<Heading>) {
+        self.given = heading;
+    }
+
+    /// Takes a frame and the time of the middle of its exposure, in the camera's clock. See [`Engine::submit`].
+    ///
+    /// # Errors
+    /// As [`Engine::submit`].
+    pub fn submit(&mut self, frame: &Frame<'_>, time_s: f64) -> Result<Ticket> {
+        let before = self.last;
+        let (turn, fault) = self.turn(before, time_s);
+        if let Some(Invalid::Interval { .. }) = fault {
+            self.engine.reset();
+        }
+        let heading = self.given.unwrap_or_else(|| self.turned_heading(time_s));
+        let motion = Motion { prev_from_cur: turn.unwrap_or(DMat3::IDENTITY), heading };
+        let extras = Extras { motion: Some(&motion), ..Extras::default() };
+        let submitted = Instant::now();
+        let ticket = self.engine.submit_with(frame, &extras)?;
+        self.last = Some(Last { frame: ticket.frame(), time_s });
+        // What was never waited for is forgotten, oldest first.
+        if self.waiting.len() == self.config.engine.in_flight {
+            self.waiting.pop_front();
+        }
+        self.waiting.push_back(Waiting { frame: ticket.frame(), time_s, before, turn, fault, submitted });
+        Ok(ticket)
+    }
+
+    /// Whether a frame is done. See [`Engine::poll`].
+    ///
+    /// # Errors
+    /// As [`Engine::poll`].
+    pub fn poll(&mut self, ticket: &Ticket) -> Result<bool> {
+        self.engine.poll(ticket)
+    }
+
+    /// Waits for a frame. Frames are to be waited for in the order in which they were submitted: what one tells of the
+    /// heading is used for the next.
+    ///
+    /// # Errors
+    /// As [`Engine::wait`].
+    pub fn wait(&mut self, ticket: Ticket) -> Result<Cue<'_>> {
+        let Self {
+            engine, config, sectors, headings, alarms, waiting, given, heading, heading_time_s, ..
+        } = self;
+        let output = engine.wait(ticket)?;
+        let place = waiting.iter().position(|waiting| waiting.frame == ticket.frame());
+        let frame = place.and_then(|place| waiting.remove(place));
+        let Some(frame) = frame else { return Err(Error::Ticket { ticket: ticket.frame() }) };
+        let interval_s = frame.interval_s();
+        let previous = output.map(|output| output.previous);
+        let lost = previous != frame.before.map(|before| before.frame);
+        let mut invalid = frame.fault.or(lost.then_some(Invalid::Lost));
+        let (mut flow, mut fields, mut threat): (_, &[Vec<f32>], _) = (None, &[], None);
+        let pair = output.and_then(|output| Some((output, output.fields.split_first()?, interval_s?)));
+        match pair {
+            Some((output, (summed, rest), interval_s)) if !lost => {
+                sectors.read(summed, interval_s);
+                (flow, fields) = (output.flow, rest);
+                let coverage = sectors.coverage();
+                let least = config.least_coverage;
+                invalid = invalid
+                    .or((!(coverage >= least)).then_some(Invalid::Coverage { found: coverage, least }));
+                if invalid.is_none() {
+                    let found = headings.update(sectors, &frame.turn.unwrap_or(DMat3::IDENTITY));
+                    (*heading, *heading_time_s) = (given.unwrap_or(found), frame.time_s);
+                    threat = alarms.update(sectors, heading);
+                }
+            }
+            _ => {
+                *sectors = Sectors::unknown(sectors.grid);
+                alarms.reset();
+            }
+        }
+        Ok(Cue {
+            frame: frame.frame,
+            time_s: frame.time_s,
+            interval_s,
+            invalid,
+            prev_from_cur: frame.turn,
+            heading: *heading,
+            sectors,
+            threat,
+            flow,
+            fields,
+            latency: frame.submitted.elapsed(),
+        })
+    }
+
+    /// Submits a frame and waits for it.
+    ///
+    /// # Errors
+    /// As [`Engine::process`].
+    pub fn process(&mut self, frame: &Frame<'_>, time_s: f64) -> Result<Cue<'_>> {
+        let ticket = self.submit(frame, time_s)?;
+        self.engine.finish(ticket)?;
+        self.wait(ticket)
+    }
+
+    /// How the camera turned since the frame before, or why that is not known, or why the two make no pair.
+    fn turn(&self, before: Option<Last>, time_s: f64) -> (Option<DMat3>, Option<Invalid>) {
+        let Some(before) = before else { return (None, Some(Invalid::First)) };
+        let (interval_s, limit_s) = (time_s - before.time_s, self.config.max_interval_s);
+        if !(interval_s > 0.0 && interval_s <= limit_s) {
+            return (None, Some(Invalid::Interval { interval_s, limit_s }));
+        }
+        match self.gyro.as_ref().map(|gyro| gyro.prev_from_cur(before.time_s, time_s)) {
+            None => (None, None),
+            Some(Ok(turn)) => (Some(turn), None),
+            Some(Err(fault)) => (None, Some(Invalid::Gyro(fault))),
+        }
+    }
+
+    /// The heading as the camera sees it at a later time. Over so short a time the aircraft goes straight on.
+    fn turned_heading(&self, time_s: f64) -> Heading {
+        let turn = self.gyro.as_ref().map(|gyro| gyro.prev_from_cur(self.heading_time_s, time_s));
+        match turn {
+            Some(Ok(turn)) => {
+                Heading { direction: turn.transpose() * self.heading.direction, ..self.heading }
+            }
+            None | Some(Err(_)) => self.heading,
+        }
+    }
+
+    /// Begins anew: the next frame is a first frame, and nothing is known of the heading.
+    pub fn reset(&mut self) {
+        self.engine.reset();
+        self.last = None;
+        self.heading = Heading::UNKNOWN;
+        self.headings.reset();
+        self.alarms.reset();
+    }
+
+    /// The engine that computes: its adapter, latencies and counts.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// The pinhole whose pictures the flow is computed of.
+    pub fn ideal(&self) -> &Camera {
+        &self.ideal
+    }
+
+    /// The sectors of the view.
+    pub fn grid(&self) -> &Grid {
+        &self.sectors.grid
+    }
+
+    /// The cells over which the flow is averaged.
+    pub fn cells(&self) -> &Cells {
+        &self.cells
+    }
+}
