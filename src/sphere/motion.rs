@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 /// Values of a plan's `motion` buffer.
-pub(crate) const MOTION_LEN: usize = 16;
+pub const MOTION_LEN: usize = 16;
 
 /// What is known of the camera's motion from the frame before to this one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Motion {
 
     /// The values of the `motion` buffer: the rows of `prev_from_cur − 1`, so that a small turn keeps all its digits, then
     /// the heading and its error.
-    pub(crate) fn values(&self) -> [f32; MOTION_LEN] {
+    pub fn values(&self) -> [f32; MOTION_LEN] {
         let rows = (self.prev_from_cur - DMat3::IDENTITY).transpose();
         let mut values = [0.0; MOTION_LEN];
         let heading = self.heading.direction.extend(self.heading.error_rad);
