@@ -158,6 +158,18 @@ fn the_undistorted_picture_is_that_of_opencv() {
 }
 
 #[test]
+fn files_that_tools_have_written_are_read() {
+    let Some(folder) = folder() else { return };
+    let camera = viewsphere::camera::read(folder.join("opencv_chessboard/left_intrinsics.yml")).unwrap();
+    assert_eq!((camera.size, camera.f_u), (Size::new(640, 480), 535.915733961632));
+    assert_eq!(camera.lens.coefficients[4], 0.23839153080878486);
+    for (name, f_u) in [("cam0", 458.654), ("cam1", 457.587)] {
+        let camera = viewsphere::camera::read(folder.join(format!("euroc_v101/{name}_sensor.yaml"))).unwrap();
+        assert_eq!((camera.size, camera.f_u), (Size::new(752, 480), f_u));
+    }
+}
+
+#[test]
 fn the_kernel_maps_as_f64_does() {
     let size = Size::new(641, 363);
     let camera = |f: f64, lens: &[f64]| Camera {

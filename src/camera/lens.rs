@@ -54,6 +54,12 @@ impl Lens {
         Ok(Self { coefficients: all })
     }
 
+    /// The coefficients that a file needs: 5, or 8 if one of the last three is not 0.
+    pub(super) fn shortest(&self) -> &[f64] {
+        let rational = self.coefficients[5..].iter().any(|c| *c != 0.0);
+        &self.coefficients[..if rational { 8 } else { 5 }]
+    }
+
     /// Where the lens shows what an ideal pinhole would show at `ideal`; both are at a distance of 1 from the pinhole.
     ///
     /// The bare formula: beyond [`Lens::radius_limit`] it gives places without meaning.

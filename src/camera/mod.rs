@@ -4,6 +4,7 @@
 //! of it is `f64`; what is done per pixel has its kernels.
 
 mod check;
+mod file;
 mod fold;
 mod lens;
 mod pose;
@@ -11,6 +12,7 @@ mod view;
 
 use glam::{DMat3, DVec3};
 
+pub use file::{Format, decode, kalibr, opencv, read, ros, write};
 pub use lens::Lens;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
 pub use view::View;
