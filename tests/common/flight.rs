@@ -55,7 +55,7 @@ pub(crate) fn fly(
     }
     let camera = camera();
     let rays = good(RayTable::new(&camera));
-    let config = PipelineConfig { gyro: Some(config.gyro.unwrap_or(GyroConfig::default())), ..config };
+    let config = PipelineConfig { gyro: Some(config.gyro.unwrap_or_default()), ..config };
     let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &config));
     let first_s = last_time_s - f64::from(frames - 1) / RATE_HZ;
     let mut gyro_s = first_s - 0.005;
