@@ -41,6 +41,7 @@ pub mod imu;
 pub mod kernel;
 pub mod kernels;
 pub mod plan;
+pub mod sim;
 
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};
