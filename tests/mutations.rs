@@ -8,8 +8,8 @@ use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
     ALL, area, binomial, certain_expansion_x, certain_expansion_y, certain_matrices, compare, confidence,
-    expansion_x, expansion_y, luma, matrices, resample_x, resample_y, residual, solve, upsample, weigh,
-    window_y,
+    expansion_x, expansion_y, lens_map, luma, matrices, remap, resample_x, resample_y, residual, solve,
+    upsample, weigh, window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -66,6 +66,20 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
     (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
     (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
+    (&lens_map::KERNEL, "s * b.w", "s * a.w"),
+    (&lens_map::KERNEL, "a.z * (s + 2.0 * y * y)", "a.z * (s + 2.0 * x * x)"),
+    (&lens_map::KERNEL, "ray.z > 0.0", "ray.z > -1e9"),
+    (&lens_map::KERNEL, "across < params.limit.x * ray.z * ray.z", "true"),
+    (&lens_map::KERNEL, "* params.limit.y", "* 1e9"),
+    (&lens_map::KERNEL, "covered.x * covered.y", "covered.x"),
+    (&lens_map::KERNEL, "most > 1.0", "most > 2.0"),
+    (&lens_map::KERNEL, "min(value, 1.0)", "value"),
+    (&lens_map::KERNEL, "(pixel - params.out_centre)", "(pixel + 0.5 - params.out_centre)"),
+    (&lens_map::KERNEL, "dot(motion[0].xyz, out)", "dot(vec3f(motion[0].x, motion[1].x, motion[2].x), out)"),
+    (&remap::KERNEL, "held - whole", "place - whole"),
+    (&remap::KERNEL, "min(at.x + 1u, params.in_width - 1u)", "at.x"),
+    (&remap::KERNEL, "min(place, last)", "min(place, last + 1.0)"),
+    (&remap::KERNEL, "min(id.x, params.width - 1u)", "id.x"),
     (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
 ];
 

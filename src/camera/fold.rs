@@ -7,8 +7,10 @@
 //!
 //! q − 6 |p| r > 0, g − 6 |p| r > 0, and the denominator of q is positive.
 //!
-//! The second is sharp, in the direction opposite to p. Times powers of the denominator all three are polynomials in r,
-//! and Bernstein's form shows whether one is positive on an interval, without a step between samples to fall through.
+//! The second is sharp, in the direction opposite to p. Just before a root of the denominator the formula may rise without
+//! bound and stay one to one: then all that is further out would be found in a thin ring. So g may not exceed
+//! [`MAX_STRETCH`] either. Times powers of the denominator all of these are polynomials in r, and Bernstein's form shows
+//! whether one is positive on an interval, without a step between samples to fall through.
 
 use super::lens::Named;
 
@@ -18,6 +20,9 @@ const TERMS: usize = 14;
 const MAX_DEPTH: u32 = 40;
 /// The largest angle from the axis that a planar picture is followed to.
 const MAX_ANGLE_DEG: f64 = 89.9;
+
+/// How many times further apart than an ideal pinhole a lens may show two places. Strong pincushions reach 2.
+const MAX_STRETCH: f64 = 4.0;
 
 /// Coefficients of 1, r, r², …
 type Polynomial = [f64; TERMS];
@@ -30,8 +35,16 @@ pub(super) fn is_one_to_one(lens: &Named, radius: f64) -> bool {
 /// The radius of the largest disc on which it is.
 pub(super) fn limit(lens: &Named) -> f64 {
     let conditions = conditions(lens);
-    let holds = |radius: f64| conditions.iter().all(|p| is_positive(p, radius));
-    let (mut good, mut bad) = (0.0, MAX_ANGLE_DEG.to_radians().tan());
+    largest(|radius| conditions.iter().all(|p| is_positive(p, radius)))
+}
+
+fn farthest() -> f64 {
+    MAX_ANGLE_DEG.to_radians().tan()
+}
+
+/// The largest radius for which something holds that holds for all smaller ones, too.
+fn largest(holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut good, mut bad) = (0.0, farthest());
     if holds(bad) {
         return bad;
     }
@@ -45,7 +58,14 @@ pub(super) fn limit(lens: &Named) -> f64 {
     }
 }
 
-fn conditions(lens: &Named) -> [Polynomial; 3] {
+/// The first root of the denominator within the limit's largest angle, if there is one.
+pub(super) fn denominator_root(lens: &Named) -> Option<f64> {
+    let [d, ..] = conditions(lens);
+    let root = largest(|radius| is_positive(&d, radius));
+    (root < farthest()).then_some(root)
+}
+
+fn conditions(lens: &Named) -> [Polynomial; 4] {
     let even = |[a, b, c]: [f64; 3]| place(&[1.0, a, b, c], 2);
     let slope = |[a, b, c]: [f64; 3]| place(&[a, 2.0 * b, 3.0 * c], 2);
     let (n, d) = (even(lens.numerator), even(lens.denominator));
@@ -53,7 +73,9 @@ fn conditions(lens: &Named) -> [Polynomial; 3] {
     let radial = minus(&times(&n, &d), &times(&turn, &place(&[0.0, -2.0], 2)));
     let tangential = place(&[0.0, 6.0 * lens.p1.hypot(lens.p2)], 1);
     let across = minus(&n, &times(&tangential, &d));
-    [d, across, minus(&radial, &times(&tangential, &times(&d, &d)))]
+    let d_squared = times(&d, &d);
+    let stretch = minus(&times(&d_squared, &place(&[MAX_STRETCH], 1)), &radial);
+    [d, across, minus(&radial, &times(&tangential, &d_squared)), stretch]
 }
 
 /// Coefficients of every `step`-th power.

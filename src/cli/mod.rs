@@ -15,6 +15,7 @@ mod eval;
 mod flow;
 mod input;
 mod print;
+mod undistort;
 
 use std::process::ExitCode;
 
@@ -34,6 +35,7 @@ Examples:
   viewsphere demo                                    a made-up scene, its flow and its errors as pictures
   viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  viewsphere undistort --camera cam.yaml in.jpg -o out.png
   viewsphere devices                                 what there is to compute on
 
 Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what."
@@ -46,6 +48,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Flow(Box<flow::Flow>),
+    Undistort(Box<undistort::Undistort>),
     Crosscheck(Box<crosscheck::Crosscheck>),
     Eval(eval::Eval),
     Bench(Box<bench::Bench>),
@@ -81,6 +84,7 @@ impl Command {
     fn run(&self) -> Result<Outcome> {
         match self {
             Self::Flow(command) => command.run(),
+            Self::Undistort(command) => command.run(),
             Self::Crosscheck(command) => command.run(),
             Self::Eval(command) => command.run(),
             Self::Bench(command) => command.run(),

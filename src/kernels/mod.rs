@@ -6,6 +6,7 @@
 
 pub mod cases;
 pub mod compare;
+mod lens;
 mod pair;
 pub(crate) mod rows;
 pub mod tables;
@@ -44,4 +45,6 @@ registry!(
     solve,
     residual,
     confidence,
+    lens_map,
+    remap,
 );

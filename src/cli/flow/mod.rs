@@ -1,8 +1,8 @@
 //! `viewsphere flow`: the flow between two pictures, or along a sequence or a video.
 
 mod report;
-mod source;
-mod targets;
+pub(super) mod source;
+pub(super) mod targets;
 
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frames, Image, PixelFormat, Size};
 
 /// A source whose frames belong together. Where one does not, the error names the first one too.
-pub(super) struct Source {
+pub(in crate::cli) struct Source {
     frames: Frames,
     /// What errors call frames that are not files of their own.
     stream: PathBuf,
@@ -14,7 +14,7 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn open(inputs: &[String], raw: Option<Size>) -> Result<Self> {
+    pub(in crate::cli) fn open(inputs: &[String], raw: Option<Size>) -> Result<Self> {
         let frames = Frames::open(inputs, raw)?;
         if raw.is_some() && inputs != ["-"] {
             return Err(Error::parameter("--raw", "given", "none unless the input is -"));
@@ -24,17 +24,17 @@ impl Source {
     }
 
     /// Frames in all, where that is known beforehand.
-    pub(super) fn len(&self) -> Option<u64> {
+    pub(in crate::cli) fn len(&self) -> Option<u64> {
         self.frames.len()
     }
 
     /// What the last frame read is called.
-    pub(super) fn name(&self) -> PathBuf {
+    pub(in crate::cli) fn name(&self) -> PathBuf {
         self.frames.path().map_or_else(|| self.stream.clone(), PathBuf::from)
     }
 
     /// Reads the next frame into `image`. Returns false after the last one.
-    pub(super) fn next(&mut self, image: &mut Image) -> Result<bool> {
+    pub(in crate::cli) fn next(&mut self, image: &mut Image) -> Result<bool> {
         let read = self.frames.next_frame(image);
         let more = match (read, &self.first) {
             (Err(Error::SizeMismatch { what, found, expected }), Some((first, _))) => {
@@ -55,7 +55,7 @@ impl Source {
     }
 
     /// Reads the first two frames, without which there is no flow.
-    pub(super) fn first_two(&mut self) -> Result<[Image; 2]> {
+    pub(in crate::cli) fn first_two(&mut self) -> Result<[Image; 2]> {
         let mut images = [Image::default(), Image::default()];
         for (count, image) in images.iter_mut().enumerate() {
             if !self.next(image)? {

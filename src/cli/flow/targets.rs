@@ -54,10 +54,31 @@ pub(super) struct Pair<'a> {
 }
 
 /// Where one kind of result goes.
-enum Place {
+pub(in crate::cli) enum Place {
     Stdout,
     File(PathBuf),
     Folder(PathBuf, &'static str),
+}
+
+impl Place {
+    /// Makes the folder, if it is one.
+    pub(in crate::cli) fn make_folder(&self) -> Result<()> {
+        match self {
+            Self::Folder(folder, _) => fs::create_dir_all(folder).map_err(|source| Error::io(folder, source)),
+            Self::File(_) | Self::Stdout => Ok(()),
+        }
+    }
+
+    /// Writes the result of this number.
+    pub(in crate::cli) fn write(&self, number: u64, bytes: &[u8]) -> Result<()> {
+        match self {
+            Self::Stdout => print::bytes(bytes),
+            Self::File(path) => write_bytes(path, bytes),
+            Self::Folder(folder, extension) => {
+                write_bytes(folder.join(format!("{number:06}.{extension}")), bytes)
+            }
+        }
+    }
 }
 
 enum Kind {
@@ -96,7 +117,7 @@ impl Targets {
             places.push((Kind::Confidence { npy }, place));
         }
         let targets = Self { places, scale: args.scale, colours: args.color.is_some() };
-        targets.check()?;
+        check_places(targets.places.iter().map(|(_, place)| place))?;
         Ok(targets)
     }
 
@@ -107,12 +128,7 @@ impl Targets {
 
     /// Makes the folders.
     pub(super) fn make_folders(&self) -> Result<()> {
-        for (_, place) in &self.places {
-            if let Place::Folder(folder, _) = place {
-                fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-            }
-        }
-        Ok(())
+        self.places.iter().try_for_each(|(_, place)| place.make_folder())
     }
 
     /// Writes the results of the pair of this number.
@@ -139,46 +155,37 @@ impl Targets {
                 }
             });
         }
-        for ((_, place), bytes) in self.places.iter().zip(contents) {
-            match place {
-                Place::Stdout => print::bytes(&bytes)?,
-                Place::File(path) => write_bytes(path, &bytes)?,
-                Place::Folder(folder, extension) => {
-                    write_bytes(folder.join(format!("{number:06}.{extension}")), &bytes)?;
-                }
-            }
-        }
-        Ok(())
+        self.places.iter().zip(contents).try_for_each(|((_, place), bytes)| place.write(number, &bytes))
     }
+}
 
-    /// Checks that the folders can be written into or can be made, and that no result would replace another one.
-    fn check(&self) -> Result<()> {
-        let mut seen = Vec::new();
-        for (_, place) in &self.places {
-            match place {
-                Place::Folder(folder, _) => input::folder(folder)?,
-                Place::File(path) => {
-                    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-                    let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
-                    if !special {
-                        check_writable(parent.unwrap_or(Path::new(".")))?;
-                    }
+/// Checks that the folders can be written into or can be made, and that no result would replace another one.
+pub(in crate::cli) fn check_places<'a>(places: impl Iterator<Item = &'a Place>) -> Result<()> {
+    let mut seen = Vec::new();
+    for place in places {
+        match place {
+            Place::Folder(folder, _) => input::folder(folder)?,
+            Place::File(path) => {
+                let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+                let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+                if !special {
+                    check_writable(parent.unwrap_or(Path::new(".")))?;
                 }
-                Place::Stdout => {}
             }
-            let name = match place {
-                Place::Stdout => PathBuf::from("-"),
-                Place::File(path) => path.clone(),
-                Place::Folder(folder, extension) => folder.join(format!("NNNNNN.{extension}")),
-            };
-            if seen.contains(&name) {
-                let expected = "a place of its own for each result";
-                return Err(Error::parameter("output", format_args!("{} twice", name.display()), expected));
-            }
-            seen.push(name);
+            Place::Stdout => {}
         }
-        Ok(())
+        let name = match place {
+            Place::Stdout => PathBuf::from("-"),
+            Place::File(path) => path.clone(),
+            Place::Folder(folder, extension) => folder.join(format!("NNNNNN.{extension}")),
+        };
+        if seen.contains(&name) {
+            let expected = "a place of its own for each result";
+            return Err(Error::parameter("output", format_args!("{} twice", name.display()), expected));
+        }
+        seen.push(name);
     }
+    Ok(())
 }
 
 /// A plane of 0 to 1 as a picture, black to white.
@@ -215,7 +222,12 @@ fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(K
 }
 
 /// A file of one of the given extensions, or a folder of files of one extension.
-fn place(path: &Path, single: bool, in_folder: &'static str, as_file: &[&str]) -> Result<Place> {
+pub(in crate::cli) fn place(
+    path: &Path,
+    single: bool,
+    in_folder: &'static str,
+    as_file: &[&str],
+) -> Result<Place> {
     let extension = extension(path);
     if single && path == Path::new("-") {
         return Ok(Place::Stdout);

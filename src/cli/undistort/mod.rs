@@ -1,0 +1,214 @@
+//! `viewsphere undistort`: pictures as a camera without a lens would show them.
+
+mod resample;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::resample::Resample;
+use super::backend::BackendArgs;
+use super::flow::source::Source;
+use super::flow::targets::{Place, check_places, place};
+use super::{Outcome, input, print};
+use crate::camera::{self, Camera, Lens, View};
+use crate::error::{Error, Result};
+use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW, arrows, picture};
+
+/// There are about so many arrows in a row of the field's picture.
+const ARROWS: u32 = 40;
+
+/// Show pictures as a camera without a lens would: straight lines are straight.
+///
+/// The camera file is one of OpenCV, ROS (camera_info), Kalibr (its cam0) or EuRoC. Inputs are a picture (PNG, JPEG, PGM,
+/// PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input. For one picture -o names a .png or
+/// is - for standard output; for everything else a folder. Colour and 16-bit pictures stay what they are; videos are gray.
+/// Places that the original does not show are black. Without --keep-all and --crop the focal length and the principal point
+/// stay as they are.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere undistort --camera cam.yaml in.jpg -o out.png
+  viewsphere undistort --camera cam.yaml in.jpg -o out.png --crop --write-camera out.yaml
+  viewsphere undistort --camera cam.yaml in.jpg --field field.png
+  viewsphere undistort --camera cam.yaml 'frames/%04d.png' -o straight/ --keep-all --size 800x600
+  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere undistort --camera cam.yaml - -o straight/")]
+pub(super) struct Undistort {
+    /// A picture; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    #[arg(required = true)]
+    inputs: Vec<String>,
+    /// The camera that took the pictures
+    #[arg(long, value_name = "FILE")]
+    camera: PathBuf,
+    /// Write the result to this .png or into this folder; - is standard output
+    #[arg(short, long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Show everything that the original shows
+    #[arg(long, conflicts_with = "crop")]
+    keep_all: bool,
+    /// Show only what the original shows, with nothing black at the borders
+    #[arg(long)]
+    crop: bool,
+    /// Size of the result; without it that of the original
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+    /// Write the first picture with arrows from where things are to where they would be without the lens, to this .png
+    #[arg(long, value_name = "FILE")]
+    field: Option<PathBuf>,
+    /// Write the camera of the result to this file
+    #[arg(long, value_name = "FILE")]
+    write_camera: Option<PathBuf>,
+    /// Format of that file
+    #[arg(long, value_enum, default_value_t = FormatArg::Opencv, requires = "write_camera")]
+    camera_format: FormatArg,
+    /// Size of raw gray frames, one byte a pixel, on standard input
+    #[arg(long, value_name = "WxH")]
+    raw: Option<Size>,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+/// Formats of a camera file.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum FormatArg {
+    /// FileStorage YAML
+    Opencv,
+    /// camera_info YAML
+    Ros,
+    /// camchain YAML
+    Kalibr,
+}
+
+/// Where the results go.
+struct Places {
+    output: Option<Place>,
+    field: Option<Place>,
+    camera: Option<Place>,
+}
+
+impl Undistort {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        let raw = camera::read(&self.camera)?;
+        let out = self.ideal(&raw)?;
+        let mut source = Source::open(&self.inputs, self.raw)?;
+        let places = self.places(source.len() == Some(1))?;
+        let mut image = Image::default();
+        if !source.next(&mut image)? {
+            return Err(Error::format(source.name(), "number of frames", 0, "at least 1"));
+        }
+        input::same_size(&source.name(), image.size, raw.size, &self.camera)?;
+        if let Some(place) = &places.field {
+            place.write(0, &picture::encode_png(&field(&raw, &image)?)?)?;
+        }
+        if let Some(Place::File(path)) = &places.camera {
+            let format = match self.camera_format {
+                FormatArg::Opencv => camera::Format::OpenCv,
+                FormatArg::Ros => camera::Format::Ros,
+                FormatArg::Kalibr => camera::Format::Kalibr,
+            };
+            camera::write(path, &out, format)?;
+        }
+        let Some(place) = &places.output else { return Ok(Outcome::Done) };
+        let resample = Resample::new(self.backend.open()?, &raw, &out)?;
+        let bar = progress(source.len());
+        let done = frames(&resample, &mut source, &mut image, place, &bar);
+        bar.finish_and_clear();
+        done?;
+        if !matches!(place, Place::Stdout) {
+            let Camera { size, f_u, f_v, u_0, v_0, .. } = out;
+            let share = 100.0 * resample.share();
+            print::text(&format!(
+                "camera  {size}, focal lengths {f_u:.3} and {f_v:.3} px, principal point {u_0:.3}, {v_0:.3}\n\
+                 shown   {share:.2} % of the result"
+            ))?;
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// The camera of the result.
+    fn ideal(&self, raw: &Camera) -> Result<Camera> {
+        let size = self.size.unwrap_or(raw.size);
+        match (self.keep_all, self.crop) {
+            (true, _) => raw.ideal(size, View::KeepAll),
+            (_, true) => raw.ideal(size, View::CropToValid),
+            _ => Ok(Camera { lens: Lens::NONE, ..raw.resized(size) }),
+        }
+    }
+
+    /// Checks what the arguments ask for, and touches nothing.
+    fn places(&self, single: bool) -> Result<Places> {
+        if self.output.is_none() && self.field.is_none() && self.write_camera.is_none() {
+            return Err(Error::parameter("-o", "missing", "it, --field or --write-camera"));
+        }
+        let one = |path: &Option<PathBuf>, kinds: &[&str]| {
+            path.as_ref().map(|path| place(path, true, "png", kinds)).transpose()
+        };
+        let places = Places {
+            output: self.output.as_ref().map(|path| place(path, single, "png", &["png"])).transpose()?,
+            field: one(&self.field, &["png"])?,
+            camera: one(&self.write_camera, &["yaml", "yml"])?,
+        };
+        for (name, place) in [("--field", &places.field), ("--write-camera", &places.camera)] {
+            match place {
+                Some(Place::Folder(folder, _)) => {
+                    return Err(Error::parameter(name, folder.display(), "a file, not a folder"));
+                }
+                Some(Place::Stdout) => return Err(Error::parameter(name, "-", "a file")),
+                Some(Place::File(_)) | None => {}
+            }
+        }
+        check_places([&places.output, &places.field, &places.camera].into_iter().flatten())?;
+        Ok(places)
+    }
+}
+
+fn frames(
+    resample: &Resample,
+    source: &mut Source,
+    image: &mut Image,
+    place: &Place,
+    bar: &ProgressBar,
+) -> Result<()> {
+    place.make_folder()?;
+    for number in 0.. {
+        place.write(number, &picture::encode_png(&resample.apply(image)?)?)?;
+        bar.inc(1);
+        if !source.next(image)? {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The picture with arrows from where things are to where the same camera without its lens would show them.
+fn field(raw: &Camera, image: &Image) -> Result<Image> {
+    let ideal = Camera { lens: Lens::NONE, ..*raw };
+    let step = (raw.size.width / ARROWS).max(8);
+    let width = raw.size.width as usize;
+    let mut flow = FlowField { size: raw.size, data: vec![[UNKNOWN_FLOW; 2]; raw.size.pixels()] };
+    // Only where an arrow begins is a displacement needed.
+    for v in (step / 2..raw.size.height).step_by(step as usize) {
+        for u in (step / 2..raw.size.width).step_by(step as usize) {
+            let pixel = [f64::from(u), f64::from(v)];
+            if let Some([x, y]) = raw.ray(pixel).and_then(|ray| ideal.project(ray)) {
+                flow.data[v as usize * width + u as usize] = [(x - pixel[0]) as f32, (y - pixel[1]) as f32];
+            }
+        }
+    }
+    arrows(&image.frame()?, &flow, step, 1.0)
+}
+
+/// A bar on standard error, where that is a terminal.
+fn progress(frames: Option<u64>) -> ProgressBar {
+    let style = |template: &str| {
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+    };
+    match frames {
+        Some(1) => ProgressBar::hidden(),
+        Some(frames) => {
+            ProgressBar::new(frames).with_style(style("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left"))
+        }
+        None => ProgressBar::new_spinner().with_style(style("{spinner} {pos} frames, {per_sec}")),
+    }
+}
