@@ -4,9 +4,9 @@
 //! a wavelength of one grid spacing and next to nothing beyond, so that an octave of a spacing of two pixels is free of
 //! aliasing; those that are finer are left out, softly, by the size of a pixel on the surface.
 
-/// Grid spacing of the coarsest octave, in metres. The finest is this over 2^10, 3.9 mm.
-const COARSEST_M: f64 = 4.0;
-const OCTAVES: u32 = 11;
+/// Grid spacing of the coarsest octave, 4 m, by its logarithm to base 2. The finest is 2^10 times finer, 3.9 mm.
+const COARSEST_LOG2_M: i32 = 2;
+const OCTAVES: i32 = 11;
 /// Gray levels of an octave. All that are seen add up to a standard deviation of 30 to 45 levels.
 const AMPLITUDE: f64 = 50.0;
 /// An octave is there in full from this many halvings of its spacing above a pixel's footprint, and gone one below.
@@ -17,16 +17,17 @@ const FULL_LOG2: f64 = 1.5;
 /// With a period, the texture runs around along u and meets itself there.
 pub(super) fn gray(uv_m: [f64; 2], period_m: Option<f64>, seed: u32, footprint_log2_m: f64) -> f64 {
     let mut sum = 128.0;
-    let mut spacing_m = COARSEST_M;
     for octave in 0..OCTAVES {
-        let above = spacing_m.log2() - footprint_log2_m - FULL_LOG2 + 1.0;
+        let spacing_log2_m = COARSEST_LOG2_M - octave;
+        let above = f64::from(spacing_log2_m) - footprint_log2_m - FULL_LOG2 + 1.0;
         let share = above.clamp(0.0, 1.0);
         if !(share > 0.0) {
             break;
         }
         let weight = share * share * (3.0 - 2.0 * share);
-        sum += AMPLITUDE * weight * noise(uv_m, period_m, spacing_m, mix(seed ^ mix(octave)));
-        spacing_m /= 2.0;
+        sum += AMPLITUDE
+            * weight
+            * noise(uv_m, period_m, 2.0_f64.powi(spacing_log2_m), mix(seed ^ mix(octave as u32)));
     }
     sum
 }

@@ -86,16 +86,16 @@ pub fn displacement(
     let moved = |i: u32| -> Option<[f32; 2]> {
         let pixel = [i % size.width, i / size.width];
         let direction = from.world_from_camera * rays.bearing(pixel[0], pixel[1])?;
-        let there = match world.hit(from.position_world, direction) {
-            // The sky is at rest however the camera moves.
-            None => direction,
-            Some(hit) => from.position_world + hit.distance_m * direction - to.position_world,
+        // The sky is at rest however the camera moves.
+        let (there, distance_m) = match world.hit(from.position_world, direction) {
+            None => (direction, f64::INFINITY),
+            Some(hit) => {
+                let there = from.position_world + hit.distance_m * direction - to.position_world;
+                (there, there.length())
+            }
         };
-        let distance_m =
-            if world.hit(from.position_world, direction).is_some() { there.length() } else { f64::INFINITY };
-        let before =
-            world.hit(to.position_world, there.normalize()).map_or(f64::INFINITY, |hit| hit.distance_m);
-        if before < distance_m * (1.0 - HIDDEN) {
+        let first = world.hit(to.position_world, there.normalize());
+        if first.is_some_and(|first| first.distance_m < distance_m * (1.0 - HIDDEN)) {
             return None;
         }
         let at = camera.project(to.world_from_camera.transpose() * there)?;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use viewsphere::camera::{Camera, Lens, Pose};
 use viewsphere::frame::Size;
-use viewsphere::imu::{GyroConfig, GyroSample};
+use viewsphere::imu::GyroSample;
 use viewsphere::sim::{RayTable, World, render};
 use viewsphere::sphere::Sectors;
 use viewsphere::{Backend, Cue, Pipeline, PipelineConfig};
