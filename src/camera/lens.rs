@@ -175,6 +175,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     const STRONG: [f64; 8] = [-0.3, 0.12, 1.5e-3, -2e-3, -0.02, 0.05, 0.01, 0.002];
 
@@ -251,5 +252,36 @@ mod tests {
             assert!(text.starts_with(&format!("number of lens coefficients is {count}, expected 0, 4,")));
         }
         assert!(Lens::new(&[f64::NAN, 0.0, 0.0, 0.0]).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Whatever the lens, what it shows up to its limit is found again, and what is found is shown there.
+        #[test]
+        fn no_answer_is_wrong(
+            radial in prop::array::uniform6(-1.0..1.0_f64),
+            tangential in prop::array::uniform2(-0.05..0.05_f64),
+            places in prop::collection::vec((0.0..0.99_f64, 0.0..6.3_f64), 20),
+            others in prop::collection::vec((-3.0..3.0_f64, -3.0..3.0_f64), 20),
+        ) {
+            let [k1, k2, k3, k4, k5, k6] = radial;
+            let lens = Lens::new(&[k1, k2, tangential[0], tangential[1], k3, k4, k5, k6]).unwrap();
+            let limit = lens.radius_limit();
+            for (share, angle) in places {
+                let r = share * limit.min(10.0);
+                let ideal = [r * angle.cos(), r * angle.sin()];
+                let back = lens.undistort(lens.distort(ideal));
+                // The residual, over the slope near the fold.
+                let far = |back| distance(back, ideal) > 1e-6 * (1.0 + r);
+                prop_assert!(!back.is_none_or(far), "{lens:?} {limit} {ideal:?} {back:?}");
+            }
+            for (x, y) in others {
+                if let Some(ideal) = lens.undistort([x, y]) {
+                    prop_assert!(distance(lens.distort(ideal), [x, y]) <= 1e-11, "{lens:?} {x} {y} {ideal:?}");
+                    prop_assert!(ideal[0].hypot(ideal[1]) <= limit.max(1e-12), "{lens:?} {x} {y} {ideal:?}");
+                }
+            }
+        }
     }
 }

@@ -61,7 +61,7 @@ fn reference(
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
         let mut channels = equations_of(model, stretch);
-        for (i, &own) in certainty_0[stretch.at..][..stretch.u.len()].iter().enumerate() {
+        for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {
             let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
             let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
             for channel in &mut channels {

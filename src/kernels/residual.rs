@@ -48,8 +48,9 @@ fn reference(
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
     pair.each_block(evidence, flow, #[inline(always)] |model, stretch| {
         let mut channels = [[0.0; BLOCK]; 5];
-        for (i, weight_x) in stretch.weights_x.iter().enumerate() {
-            let share = model.inside[i] * certainty[stretch.at + i];
+        let certainties = &certainty[stretch.at..][..stretch.count];
+        for (i, (weight_x, certainty)) in stretch.weights_x.iter().zip(certainties).enumerate() {
+            let share = model.inside[i] * certainty;
             let w = share * weight_x * stretch.weight_y;
             let (b_x, b_y) = (w * model.b_x[i], w * model.b_y[i]);
             [channels[0][i], channels[1][i], channels[2][i]] =

@@ -99,7 +99,7 @@ fn vectorised<F: Fn(Band<'_>)>(y0: usize, [out, second, third]: [&mut [f32]; 3],
 /// `out[x] = Σ_k weights[k] · source(k)[x]`, where every `source(k)` is as long as `out`.
 #[inline(always)]
 pub(crate) fn weighted_sum<'a>(out: &mut [f32], weights: &[f32], source: impl Fn(usize) -> &'a [f32]) {
-    const LANES: usize = 32;
+    const LANES: usize = 64;
     let (blocks, rest) = out.as_chunks_mut::<LANES>();
     for (i, block) in blocks.iter_mut().enumerate() {
         let mut sum = [0.0; LANES];

@@ -36,13 +36,18 @@ fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32])
     let (_, height, stride) = dimensions(p.width, p.height);
     let radius = p.radius as isize;
     let window = &window[..2 * p.radius as usize + 1];
+    // A band is worked through in strips of columns, so narrow that the rows under the window stay in the nearest cache.
+    const STRIP: usize = 512;
     bands(columns, &mut [], Split::rows_of(5 * stride), #[inline(always)] |band| {
-        for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
-            let first = (band.y0 + i) as isize - radius;
+        for x0 in (0..5 * stride).step_by(STRIP) {
             // The five channels of a row lie side by side and are averaged alike.
-            weighted_sum(rows, window, |k| {
-                &equations[clamp_index(first + k as isize, height) * 5 * stride..][..5 * stride]
-            });
+            let strip = x0..(5 * stride).min(x0 + STRIP);
+            for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
+                let first = (band.y0 + i) as isize - radius;
+                weighted_sum(&mut rows[strip.clone()], window, |k| {
+                    &equations[clamp_index(first + k as isize, height) * 5 * stride..][strip.clone()]
+                });
+            }
         }
     });
 }

@@ -1,6 +1,7 @@
 //! What the tests share: the adapter, chosen on purpose and named.
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod flight;
 pub(crate) mod pair;
 pub(crate) mod sides;
 
@@ -28,4 +29,16 @@ pub(crate) fn gpu() -> Option<Gpu> {
         }
     };
     GPU.get_or_init(open).clone()
+}
+
+/// A folder of the data sets, which are not part of this crate: in the folder that `VIEWSPHERE_DATA` names, or in
+/// `../shared/data`. Where it is not there a test is skipped, and says so.
+pub(crate) fn data(name: &str) -> Option<std::path::PathBuf> {
+    let beside = || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let folder = std::env::var_os("VIEWSPHERE_DATA").map_or_else(beside, std::path::PathBuf::from).join(name);
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is not there", folder.display());
+        return None;
+    }
+    Some(folder)
 }

@@ -1,0 +1,33 @@
+//! Made-up worlds with exact truth: what a camera would see in them, and how it would see it move.
+//!
+//! A [`World`] is made of planes, rectangles, cylinders and boxes, whose intersections with a ray have a closed form, so
+//! that nearness and motion are known to the last digits. Each surface has a texture that knows how far away it is seen
+//! from and shows no detail that a pixel could not resolve.
+//!
+//! ```
+//! use viewsphere::camera::{Camera, Lens, Pose};
+//! use viewsphere::frame::Size;
+//! use viewsphere::sim::{RayTable, render, scenes};
+//!
+//! # fn main() -> viewsphere::Result<()> {
+//! let size = Size::new(64, 48);
+//! let camera = Camera { size, f_u: 40.0, f_v: 40.0, u_0: 31.5, v_0: 23.5, lens: Lens::NONE };
+//! let view = render(&scenes::frontal_wall(4.0)?, &RayTable::new(&camera)?, &scenes::START);
+//! assert!((view.nearness_per_m.data[24 * 64 + 32] - 0.25).abs() < 1e-3);
+//! # Ok(())
+//! # }
+//! ```
+
+mod rays;
+mod render;
+pub mod scenes;
+mod surface;
+mod texture;
+mod truth;
+mod world;
+
+pub use rays::RayTable;
+pub use render::{View, render};
+pub use surface::Surface;
+pub use truth::{Motion, Seen, displacement};
+pub use world::{Hit, World};

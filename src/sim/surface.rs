@@ -1,0 +1,220 @@
+//! Shapes, and where a ray meets them. Each stands in a frame of its own, in which it is as simple as can be.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result};
+
+/// A textured surface of a [`World`](super::World). All lengths are in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    origin_world: DVec3,
+    local_from_world: DMat3,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape {
+    /// z = 0, without end.
+    Plane,
+    /// z = 0 between ±half.
+    Rectangle { half_m: [f64; 2] },
+    /// Around z, from 0 to its length, with two lids.
+    Cylinder { radius_m: f64, length_m: f64 },
+    /// Between ±half.
+    Cuboid { half_m: DVec3 },
+}
+
+/// Where a ray meets a shape, in the shape's frame.
+struct Met {
+    distance_m: f64,
+    normal: DVec3,
+    face: u32,
+    uv_m: [f64; 2],
+}
+
+/// Where a ray meets a surface.
+pub(super) struct SurfaceHit {
+    pub(super) distance_m: f64,
+    /// Towards where the ray comes from.
+    pub(super) normal_world: DVec3,
+    pub(super) face: u32,
+    pub(super) uv_m: [f64; 2],
+}
+
+impl Surface {
+    /// An endless plane.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a place that is not finite, or a normal of no direction.
+    pub fn plane(point_world: DVec3, normal_world: DVec3) -> Result<Self> {
+        let normal = direction("plane normal", normal_world)?;
+        let (u, v) = normal.any_orthonormal_pair();
+        Self::new(point_world, DMat3::from_cols(u, v, normal), Shape::Plane)
+    }
+
+    /// A rectangle, seen from both sides. `to_right` and `to_top` lead from its centre to the middles of two of its edges.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the two are not at a right angle, or of no length.
+    pub fn rectangle(centre_world: DVec3, to_right: DVec3, to_top: DVec3) -> Result<Self> {
+        let (u, v) = (direction("rectangle side", to_right)?, direction("rectangle side", to_top)?);
+        if !(u.dot(v).abs() <= 1e-6) {
+            return Err(Error::parameter(
+                "rectangle sides",
+                format!("{to_right} and {to_top}"),
+                "a right angle",
+            ));
+        }
+        let normal = u.cross(v).normalize();
+        let half_m = [to_right.length(), to_top.length()];
+        Self::new(centre_world, DMat3::from_cols(u, normal.cross(u), normal), Shape::Rectangle { half_m })
+    }
+
+    /// A cylinder with lids, from the centre of one to that of the other.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for two places that are one, or a radius that is not above 0.
+    pub fn cylinder(base_world: DVec3, top_world: DVec3, radius_m: f64) -> Result<Self> {
+        let axis = direction("cylinder axis", top_world - base_world)?;
+        let (u, v) = axis.any_orthonormal_pair();
+        let length_m = (top_world - base_world).length();
+        positive("cylinder radius", radius_m)?;
+        Self::new(base_world, DMat3::from_cols(u, v, axis), Shape::Cylinder { radius_m, length_m })
+    }
+
+    /// A box of these edge lengths, turned by a rotation.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a matrix that is no rotation, or a length that is not above 0.
+    pub fn cuboid(centre_world: DVec3, world_from_box: DMat3, edges_m: DVec3) -> Result<Self> {
+        edges_m.to_array().into_iter().try_for_each(|edge| positive("box edge", edge))?;
+        let off = (world_from_box * world_from_box.transpose() - DMat3::IDENTITY).to_cols_array();
+        if !off.iter().all(|e| e.abs() <= 1e-9) {
+            return Err(Error::parameter("world_from_box", world_from_box, "a rotation"));
+        }
+        Self::new(centre_world, world_from_box, Shape::Cuboid { half_m: edges_m / 2.0 })
+    }
+
+    fn new(origin_world: DVec3, world_from_local: DMat3, shape: Shape) -> Result<Self> {
+        if !origin_world.is_finite() {
+            return Err(Error::parameter("place of a surface", origin_world, "three finite coordinates"));
+        }
+        Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape })
+    }
+
+    /// The length after which the texture repeats along u, if u runs around something.
+    pub(super) fn period_m(&self, face: u32) -> Option<f64> {
+        match self.shape {
+            Shape::Cylinder { radius_m, .. } if face == 0 => Some(std::f64::consts::TAU * radius_m),
+            _ => None,
+        }
+    }
+
+    /// Whether any of the surface lies where `normal_world` · (place − `origin_world`) is not negative. May be wrong in
+    /// saying yes.
+    pub(super) fn reaches(&self, origin_world: DVec3, normal_world: DVec3) -> bool {
+        let n = self.local_from_world * normal_world;
+        let beyond = match self.shape {
+            Shape::Plane => return true,
+            Shape::Rectangle { half_m: [a, b] } => n.x.abs() * a + n.y.abs() * b,
+            Shape::Cylinder { radius_m, length_m } => radius_m * n.x.hypot(n.y) + (n.z * length_m).max(0.0),
+            Shape::Cuboid { half_m } => n.abs().dot(half_m),
+        };
+        // The margin is for what the normal was rounded by.
+        normal_world.dot(self.origin_world - origin_world) + beyond >= -1e-9 * (1.0 + beyond)
+    }
+
+    /// Where a ray of unit direction meets the surface first.
+    pub(super) fn hit(&self, origin_world: DVec3, direction_world: DVec3) -> Option<SurfaceHit> {
+        let o = self.local_from_world * (origin_world - self.origin_world);
+        let d = self.local_from_world * direction_world;
+        let met = match self.shape {
+            Shape::Plane => flat(o, d, 0.0, 0),
+            Shape::Rectangle { half_m: [a, b] } => {
+                flat(o, d, 0.0, 0).filter(|met| met.uv_m[0].abs() <= a && met.uv_m[1].abs() <= b)
+            }
+            Shape::Cylinder { radius_m, length_m } => cylinder(o, d, radius_m, length_m),
+            Shape::Cuboid { half_m } => cuboid(o, d, half_m),
+        }?;
+        let normal = if met.normal.dot(d) > 0.0 { -met.normal } else { met.normal };
+        let normal_world = self.local_from_world.transpose() * normal;
+        Some(SurfaceHit { distance_m: met.distance_m, normal_world, face: met.face, uv_m: met.uv_m })
+    }
+}
+
+fn direction(name: &'static str, vector: DVec3) -> Result<DVec3> {
+    vector.try_normalize().ok_or_else(|| Error::parameter(name, vector, "a finite vector that is not 0"))
+}
+
+fn positive(name: &'static str, length_m: f64) -> Result<()> {
+    if length_m > 0.0 && length_m.is_finite() {
+        return Ok(());
+    }
+    Err(Error::parameter(name, length_m, "above 0 m and finite"))
+}
+
+/// The plane across z.
+fn flat(o: DVec3, d: DVec3, z_m: f64, face: u32) -> Option<Met> {
+    let distance_m = (z_m - o.z) / d.z;
+    let at = o + distance_m * d;
+    let met = distance_m > 0.0 && at.is_finite();
+    met.then_some(Met { distance_m, normal: DVec3::Z, face, uv_m: [at.x, at.y] })
+}
+
+fn cylinder(o: DVec3, d: DVec3, radius_m: f64, length_m: f64) -> Option<Met> {
+    let a = d.x * d.x + d.y * d.y;
+    let b = o.x * d.x + o.y * d.y;
+    let c = o.x * o.x + o.y * o.y - radius_m * radius_m;
+    let discriminant = b * b - a * c;
+    if !(discriminant >= 0.0) {
+        // What passes by the endless cylinder passes by the lids.
+        return None;
+    }
+    // The sum that does not cancel gives one root, the product of the roots the other.
+    let q = -b - discriminant.sqrt().copysign(b);
+    let (one, other) = (q / a, c / q);
+    let side = |distance_m: f64| {
+        let at = o + distance_m * d;
+        let met = distance_m > 0.0 && (0.0..=length_m).contains(&at.z);
+        let uv_m = [at.y.atan2(at.x) * radius_m, at.z];
+        met.then_some(Met { distance_m, normal: DVec3::new(at.x, at.y, 0.0) / radius_m, face: 0, uv_m })
+    };
+    let lid = |z_m, face| flat(o, d, z_m, face).filter(|met| met.uv_m[0].hypot(met.uv_m[1]) <= radius_m);
+    let first_side = side(one.min(other)).or_else(|| side(one.max(other)));
+    [first_side, lid(0.0, 1), lid(length_m, 2)].into_iter().flatten().min_by(by_distance)
+}
+
+fn by_distance(a: &Met, b: &Met) -> std::cmp::Ordering {
+    a.distance_m.total_cmp(&b.distance_m)
+}
+
+fn cuboid(o: DVec3, d: DVec3, half_m: DVec3) -> Option<Met> {
+    // Distance and axis of where the ray is between all three pairs of faces, and of where it is no longer.
+    let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
+    for axis in 0..3 {
+        if d[axis] == 0.0 {
+            if !(o[axis].abs() <= half_m[axis]) {
+                return None;
+            }
+            continue;
+        }
+        let side = half_m[axis].copysign(d[axis]);
+        let (near, far) = ((-side - o[axis]) / d[axis], (side - o[axis]) / d[axis]);
+        if near > enter.0 {
+            enter = (near, axis);
+        }
+        if far < leave.0 {
+            leave = (far, axis);
+        }
+    }
+    if !(enter.0 <= leave.0 && leave.0 > 0.0) {
+        return None;
+    }
+    // From the inside the face behind is seen.
+    let ((distance_m, axis), outside) = if enter.0 > 0.0 { (enter, true) } else { (leave, false) };
+    let at = o + distance_m * d;
+    let positive_face = (d[axis] > 0.0) != outside;
+    let uv_m = [at[(axis + 1) % 3], at[(axis + 2) % 3]];
+    let face = 2 * axis as u32 + u32::from(positive_face);
+    distance_m.is_finite().then_some(Met { distance_m, normal: DVec3::AXES[axis], face, uv_m })
+}

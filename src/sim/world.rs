@@ -1,0 +1,84 @@
+use glam::DVec3;
+
+use super::Surface;
+use super::texture;
+
+/// Gray level of the sky at the horizon, and how many more there are straight up.
+const HORIZON: f64 = 170.0;
+const ZENITH: f64 = 60.0;
+
+/// Surfaces under a sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    /// What is there. A surface's number is its place in this list, and part of its texture.
+    pub surfaces: Vec<Surface>,
+    /// Where the sky is brightest: a unit vector.
+    pub up_world: DVec3,
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// From the ray's origin, metres.
+    pub distance_m: f64,
+    /// Unit normal of the surface, on the side that the ray comes from.
+    pub normal_world: DVec3,
+    /// The surface's place in [`World::surfaces`].
+    pub surface: usize,
+    /// Which side of it: 0 for planes and rectangles, 0 for a cylinder's mantle and 1 and 2 for its lids, 0 to 5 for a box.
+    pub face: u32,
+    /// Where on that side, in metres along it.
+    pub uv_m: [f64; 2],
+}
+
+impl World {
+    /// A world of these surfaces in which up is against y: that of a camera that is not turned.
+    pub fn new(surfaces: Vec<Surface>) -> Self {
+        Self { surfaces, up_world: DVec3::NEG_Y }
+    }
+
+    /// What a ray of unit direction meets first; `None` is the sky.
+    pub fn hit(&self, origin_world: DVec3, direction_world: DVec3) -> Option<Hit> {
+        self.hit_among(0..self.surfaces.len(), origin_world, direction_world)
+    }
+
+    /// The same if it is known that only some surfaces can be met.
+    pub(super) fn hit_among(
+        &self,
+        surfaces: impl Iterator<Item = usize>,
+        origin_world: DVec3,
+        direction_world: DVec3,
+    ) -> Option<Hit> {
+        let mut first: Option<Hit> = None;
+        for surface in surfaces {
+            let Some(hit) = self.surfaces[surface].hit(origin_world, direction_world) else { continue };
+            if first.is_none_or(|first| hit.distance_m < first.distance_m) {
+                first = Some(Hit {
+                    distance_m: hit.distance_m,
+                    normal_world: hit.normal_world,
+                    surface,
+                    face: hit.face,
+                    uv_m: hit.uv_m,
+                });
+            }
+        }
+        first
+    }
+
+    /// Gray level, 0 to 255, of what a ray meets, for a pixel that is `pixel_rad` wide.
+    pub fn gray(&self, hit: Option<&Hit>, direction_world: DVec3, pixel_rad: f64) -> f64 {
+        let gray = match hit {
+            None => HORIZON + ZENITH * direction_world.dot(self.up_world),
+            Some(hit) => {
+                let slant = hit.normal_world.dot(direction_world).abs();
+                // A pixel covers a length of its width across the slant and more along it. Between the two: the longer
+                // one alone would blur too much, the shorter one would alias.
+                let across_m = hit.distance_m * pixel_rad;
+                let footprint_log2_m = (across_m.powi(3) / (slant * slant)).log2() / 3.0;
+                let seed = 8 * hit.surface as u32 + hit.face;
+                texture::gray(hit.uv_m, self.surfaces[hit.surface].period_m(hit.face), seed, footprint_log2_m)
+            }
+        };
+        gray.clamp(0.0, 255.0)
+    }
+}
