@@ -15,6 +15,7 @@ mod eval;
 mod flow;
 mod input;
 mod print;
+mod run;
 mod undistort;
 
 use std::process::ExitCode;
@@ -35,6 +36,7 @@ Examples:
   viewsphere demo                                    a made-up scene, its flow and its errors as pictures
   viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be met, where and when
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
   viewsphere devices                                 what there is to compute on
 
@@ -48,6 +50,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Flow(Box<flow::Flow>),
+    Run(Box<run::Run>),
     Undistort(Box<undistort::Undistort>),
     Crosscheck(Box<crosscheck::Crosscheck>),
     Eval(eval::Eval),
@@ -84,6 +87,7 @@ impl Command {
     fn run(&self) -> Result<Outcome> {
         match self {
             Self::Flow(command) => command.run(),
+            Self::Run(command) => command.run(),
             Self::Undistort(command) => command.run(),
             Self::Crosscheck(command) => command.run(),
             Self::Eval(command) => command.run(),

@@ -10,10 +10,16 @@ use crate::error::{Error, Result};
 ///
 /// A reader that has gone away, such as `head`, has had enough, which is no failure.
 pub(super) fn bytes(bytes: &[u8]) -> Result<()> {
+    offer(bytes).map(|_| ())
+}
+
+/// The same, and whether there is still a reader: one who goes on for ever has to know.
+pub(super) fn offer(bytes: &[u8]) -> Result<bool> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(source) if source.kind() != ErrorKind::BrokenPipe => Err(Error::io("standard output", source)),
-        _ => Ok(()),
+        Ok(()) => Ok(true),
+        Err(source) if source.kind() == ErrorKind::BrokenPipe => Ok(false),
+        Err(source) => Err(Error::io("standard output", source)),
     }
 }
 
@@ -29,7 +35,12 @@ pub(super) fn json(figures: &impl Serialize) -> Result<()> {
 
 /// The same on one line.
 pub(super) fn json_line(figures: &impl Serialize) -> Result<()> {
-    text(&to_json(serde_json::to_string(figures))?)
+    text(&one_line(figures)?)
+}
+
+/// Figures as JSON on one line, without its end.
+pub(super) fn one_line(figures: &impl Serialize) -> Result<String> {
+    to_json(serde_json::to_string(figures))
 }
 
 fn to_json(text: serde_json::Result<String>) -> Result<String> {

@@ -104,6 +104,14 @@ impl Frames {
         }
     }
 
+    /// Frames a second as a fraction, where the source states it.
+    pub fn rate(&self) -> Option<(u32, u32)> {
+        match &self.0 {
+            Source::Y4m(video) => video.rate(),
+            Source::Pictures { .. } | Source::Raw(_) => None,
+        }
+    }
+
     /// Seconds from the first frame to the last one read, where the source states a rate.
     pub fn time_s(&self) -> Option<f64> {
         match &self.0 {

@@ -28,6 +28,11 @@ impl Source {
         self.frames.len()
     }
 
+    /// Frames a second as a fraction, where the source states it.
+    pub(in crate::cli) fn rate(&self) -> Option<(u32, u32)> {
+        self.frames.rate()
+    }
+
     /// What the last frame read is called.
     pub(in crate::cli) fn name(&self) -> PathBuf {
         self.frames.path().map_or_else(|| self.stream.clone(), PathBuf::from)

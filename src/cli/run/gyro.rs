@@ -1,0 +1,183 @@
+//! The gyro's log, and handing its samples over as a live one would.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::{DMat3, DVec3};
+
+use crate::camera::{FLU_FROM_CAMERA, FRD_FROM_CAMERA};
+use crate::error::{Error, Result};
+use crate::imu::{GyroConfig, GyroSample, read_log};
+use crate::pipeline::Pipeline;
+use crate::sphere::Derotation;
+
+/// The gyro, and how it belongs to the camera.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Gyro")]
+pub(super) struct GyroArgs {
+    /// Log of a gyro, so that the camera's turn is taken out of the flow: time_s,gyro_x_rad_s,… or EuRoC's
+    #[arg(long, value_name = "FILE")]
+    gyro: Option<PathBuf>,
+    /// What the gyro says at rest, in its own frame, in rad/s
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "gyro")]
+    gyro_bias: Option<Numbers<3>>,
+    /// What is added to the log's times to get the frames'
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, requires = "gyro")]
+    gyro_offset_s: Option<f64>,
+    /// How the gyro is mounted: optical (its axes are the camera's: right, down, forward), frd (forward, right, down), flu
+    /// (forward, left, up), or the 9 numbers of the rotation that takes a direction from the gyro's frame to the camera's,
+    /// row by row [default: optical]
+    #[arg(long, value_name = "MOUNT", allow_hyphen_values = true, requires = "gyro")]
+    camera_from_gyro: Option<Mount>,
+    /// Where the camera's turn is taken out [default: before]
+    #[arg(long, value_enum, requires = "gyro")]
+    derotation: Option<DerotationArg>,
+}
+
+/// Where the camera's turn is taken out of the flow.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum DerotationArg {
+    /// The frame before is turned first: most accurate in hard turns
+    Before,
+    /// From the flow that was found
+    After,
+    /// The same, and the search begins with the turn
+    Primed,
+}
+
+impl GyroArgs {
+    pub(super) fn config(&self) -> Result<Option<GyroConfig>> {
+        if self.gyro.is_none() {
+            return Ok(None);
+        }
+        let default = GyroConfig::default();
+        let config = GyroConfig {
+            bias_rad_s: self.gyro_bias.map_or(default.bias_rad_s, |Numbers(bias)| bias.into()),
+            time_offset_s: self.gyro_offset_s.unwrap_or(default.time_offset_s),
+            camera_from_gyro: self.camera_from_gyro.map_or(default.camera_from_gyro, |Mount(turn)| turn),
+            ..default
+        };
+        config.validate()?;
+        Ok(Some(config))
+    }
+
+    pub(super) fn derotation(&self) -> Derotation {
+        match self.derotation {
+            None | Some(DerotationArg::Before) => Derotation::Before,
+            Some(DerotationArg::After) => Derotation::After,
+            Some(DerotationArg::Primed) => Derotation::Primed,
+        }
+    }
+
+    /// The log, to be handed over sample by sample.
+    pub(super) fn feed(&self) -> Result<Feed> {
+        let samples = self.gyro.as_ref().map(read_log).transpose()?.unwrap_or_default();
+        Ok(Feed::new(samples, self.gyro_offset_s.unwrap_or(0.0)))
+    }
+}
+
+/// A log, handed over in its own order and not before its time.
+pub(super) struct Feed {
+    samples: Vec<GyroSample>,
+    offset_s: f64,
+    next: usize,
+    /// When the last sample that was handed over came.
+    reached_s: f64,
+}
+
+impl Feed {
+    fn new(samples: Vec<GyroSample>, offset_s: f64) -> Self {
+        Self { samples, offset_s, next: 0, reached_s: f64::NEG_INFINITY }
+    }
+
+    /// Hands over what came up to a frame's time, and one sample after it.
+    pub(super) fn push_until(&mut self, pipeline: &mut Pipeline, time_s: f64) {
+        while let Some(&sample) = self.samples.get(self.next).filter(|_| !(self.reached_s > time_s)) {
+            pipeline.push_gyro(sample);
+            if let Some(arrival_s) = self.arrival_s(self.next).filter(|_| is_sound(&sample)) {
+                self.reached_s = arrival_s;
+            }
+            self.next += 1;
+        }
+    }
+
+    /// When a sample came, in the frames' time. That is not always what it states: one wild time must not hold up those
+    /// behind it, so it is the middle one of its own and its neighbours'.
+    fn arrival_s(&self, at: usize) -> Option<f64> {
+        let around = at.saturating_sub(1)..(at + 2).min(self.samples.len());
+        let mut times: Vec<f64> =
+            self.samples[around].iter().map(|sample| sample.time_s).filter(|time| time.is_finite()).collect();
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).map(|time| time + self.offset_s)
+    }
+}
+
+fn is_sound(sample: &GyroSample) -> bool {
+    sample.time_s.is_finite() && sample.gyro_rad_s.is_finite()
+}
+
+/// Numbers between commas or blanks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Numbers<const N: usize>([f64; N]);
+
+impl<const N: usize> FromStr for Numbers<N> {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let words = text.split([',', ' ']).filter(|word| !word.is_empty());
+        let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
+        let numbers = numbers.and_then(|numbers| numbers.try_into().ok()).map(Self);
+        numbers.ok_or_else(|| Error::parameter("list", text, format_args!("{N} numbers, comma-separated")))
+    }
+}
+
+/// The rotation that takes a direction from the gyro's frame to the camera's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mount(DMat3);
+
+impl FromStr for Mount {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match text {
+            "optical" => Ok(Self(DMat3::IDENTITY)),
+            "frd" => Ok(Self(FRD_FROM_CAMERA.transpose())),
+            "flu" => Ok(Self(FLU_FROM_CAMERA.transpose())),
+            _ => {
+                let Numbers([a, b, c, d, e, f, g, h, i]) = text.parse().map_err(|_| {
+                    Error::parameter("mount", text, "optical, frd, flu, or 9 numbers, comma-separated")
+                })?;
+                let rows = [DVec3::new(a, b, c), DVec3::new(d, e, f), DVec3::new(g, h, i)];
+                Ok(Self(DMat3::from_cols(rows[0], rows[1], rows[2]).transpose()))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mounts_take_the_bodys_axes_to_the_cameras() {
+        let to_camera = |mount: &str, axis: DVec3| mount.parse::<Mount>().unwrap().0 * axis;
+        for mount in ["frd", "flu"] {
+            assert_eq!(to_camera(mount, DVec3::X), DVec3::Z, "forward");
+        }
+        assert_eq!(to_camera("frd", DVec3::Y), DVec3::X);
+        assert_eq!(to_camera("flu", DVec3::Y), DVec3::NEG_X);
+        assert_eq!(to_camera("optical", DVec3::Y), DVec3::Y);
+        assert_eq!(to_camera("0,1,0, 0,0,1, 1,0,0", DVec3::X), DVec3::Z);
+        assert!("1,2".parse::<Mount>().is_err() && "up".parse::<Mount>().is_err());
+    }
+
+    #[test]
+    fn a_wild_time_holds_up_nothing_behind_it() {
+        let sample = |time_s: f64| GyroSample { time_s, gyro_rad_s: DVec3::ZERO };
+        let feed = Feed::new([0.0, 0.1, 1e9, 0.3, f64::NAN, 0.5].map(sample).to_vec(), 10.0);
+        let arrivals: Vec<f64> = (0..6).map(|at| feed.arrival_s(at).unwrap()).collect();
+        assert!(arrivals.iter().all(|time| (10.0..=10.5).contains(time)), "{arrivals:?}");
+    }
+}

@@ -1,0 +1,219 @@
+//! `viewsphere run`: from frames and a gyro to what will be met, where and when.
+
+mod gyro;
+mod intake;
+mod line;
+mod summary;
+mod times;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use self::gyro::{Feed, GyroArgs};
+use self::intake::{Intake, Reader, Taken};
+use self::line::{Line, Timing};
+use self::summary::Summary;
+use self::times::{Rate, Times};
+use super::args::FlowArgs;
+use super::backend::BackendArgs;
+use super::flow::source::Source;
+use super::{Outcome, input, print};
+use crate::camera::{self, Camera, Lens};
+use crate::engine::Config;
+use crate::error::{Error, Result};
+use crate::frame::{Image, Size};
+use crate::pipeline::{Cue, Pipeline, PipelineConfig};
+use crate::sphere::Sphere;
+
+/// Say what will be met, where and when: time to contact per sector of the view, frame by frame.
+///
+/// Inputs are pictures (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input.
+/// The camera comes from a file of OpenCV, ROS (camera_info), Kalibr or EuRoC, or with --fov-deg is a pinhole without a
+/// lens. Azimuth is positive to the right and elevation up, from the camera's axis.
+///
+/// A line a frame goes to standard output, the summary to standard error. A frame whose cue is not to be used says why and
+/// the run goes on: the first one; one too long after the one before; one whose gyro samples are missing, are not numbers
+/// or run backwards; one in which too little can be seen. Without --gyro the camera's turn stays in the flow.
+///
+/// With --json-lines a line is an object: frame, time_s, valid, invalid_kind and invalid (null, or first, interval, gyro,
+/// coverage, lost, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or null, threat (azimuth_deg,
+/// elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg from left to right, elevation_deg
+/// from top to bottom, and in lists row by row ttc_s, null where nothing is known or comes nearer, and coverage 0 to 1),
+/// timing (age_ms since the frame was there, latency_ms since it was submitted, dropped in all).
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv
+  viewsphere run 'cam0/data/*.png' --camera cam0.yaml --times cam0/data.csv --gyro imu0/data.csv --camera-from-gyro frd
+  viewsphere run flight.y4m --fov-deg 90 --json-lines | jq -c 'select(.threat.alarm) | [.time_s, .threat]'
+  viewsphere run flight.y4m --fov-deg 90 --realtime --quiet
+  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere run - --fov-deg 90
+  ffmpeg -f v4l2 -i /dev/video0 -f yuv4mpegpipe - | viewsphere run - --camera cam.yaml --realtime")]
+pub(super) struct Run {
+    /// Pictures; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    #[arg(required = true)]
+    inputs: Vec<String>,
+    /// The camera that took the frames
+    #[arg(long, value_name = "FILE", required_unless_present = "fov_deg", conflicts_with = "fov_deg")]
+    camera: Option<PathBuf>,
+    /// In place of a camera file: a pinhole without a lens that sees this far from the left border to the right one
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    fov_deg: Option<f64>,
+    /// Frames a second, such as 25 or 30000/1001 [default: the video's, else 30]
+    #[arg(long, value_name = "RATE", conflicts_with = "times")]
+    fps: Option<Rate>,
+    /// The frames' times: EuRoC's `#timestamp [ns],filename`, or one in seconds a line
+    #[arg(long, value_name = "FILE")]
+    times: Option<PathBuf>,
+    /// What is added to all frames' times, so that they are those of the gyro's log
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
+    start_s: f64,
+    /// Columns and rows of sectors
+    #[arg(long, value_name = "WxH", default_value = "24x9")]
+    sectors: Size,
+    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1
+    #[arg(long, value_name = "FILE")]
+    mask: Option<PathBuf>,
+    /// Print a JSON object a frame
+    #[arg(long, conflicts_with_all = ["quiet", "json"])]
+    json_lines: bool,
+    /// Add to each sector ttc_early_s and ttc_late_s (between which most of it lies), nearness_rate_hz, divergence_hz and
+    /// confidence
+    #[arg(long, requires = "json_lines")]
+    sector_detail: bool,
+    /// Print nothing but the summary
+    #[arg(long)]
+    quiet: bool,
+    /// Print nothing but the summary, as JSON on standard output
+    #[arg(long)]
+    json: bool,
+    /// Take frames as a camera would deliver them: those of files at their times, those of a stream as they come. Of those
+    /// that come while one is computed the newest is kept, and the others are dropped and counted
+    #[arg(long)]
+    realtime: bool,
+    /// Size of raw gray frames, one byte a pixel, on standard input
+    #[arg(long, value_name = "WxH")]
+    raw: Option<Size>,
+    #[command(flatten)]
+    gyro: GyroArgs,
+    #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+impl Run {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        if !self.start_s.is_finite() {
+            return Err(Error::parameter("--start-s", self.start_s, "a finite time"));
+        }
+        let mut config = PipelineConfig {
+            engine: Config { flow: self.flow.farneback()?, ..PipelineConfig::default().engine },
+            sphere: Sphere {
+                derotation: self.gyro.derotation(),
+                sectors: [self.sectors.width, self.sectors.height],
+                ..Sphere::default()
+            },
+            gyro: self.gyro.config()?,
+            ..PipelineConfig::default()
+        };
+        config.validate()?;
+        let file = self.camera.as_ref().map(|path| Ok((path, camera::read(path)?))).transpose()?;
+        let feed = self.gyro.feed()?;
+        let source = Source::open(&self.inputs, self.raw)?;
+        let times = self.times(&source)?;
+        let mut reader = Reader::new(source, times);
+        let mut first = Taken::default();
+        if !reader.next(&mut first)? {
+            return Err(Error::format(reader.name(), "number of frames", 0, "at least 1"));
+        }
+        let Image { size, format, .. } = first.image;
+        let name = reader.name();
+        let camera = match file {
+            Some((path, camera)) => {
+                input::same_size(&name, size, camera.size, path)?;
+                camera
+            }
+            None => self.pinhole(size)?,
+        };
+        config.engine.format = format;
+        config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
+        let pipeline = Pipeline::new(self.backend.open()?, &camera, &config)?;
+        // What it took to get ready is not the frame's age.
+        first.there = Instant::now();
+        let intake = match self.realtime {
+            true => Intake::newest(reader, &first, self.inputs == ["-"]),
+            false => Intake::Each(Box::new(reader)),
+        };
+        let mut flight =
+            Flight { summary: Summary::new(pipeline.engine().adapter()), pipeline, feed, intake };
+        let end = self.frames(&mut flight, first);
+        let Flight { summary, pipeline, intake, .. } = &mut flight;
+        summary.finish(pipeline.engine().latency(), intake.dropped());
+        summary.print(self.json)?;
+        end.map(|()| Outcome::Done)
+    }
+
+    /// Frames until the source ends or fails.
+    fn frames(&self, flight: &mut Flight, mut taken: Taken) -> Result<()> {
+        loop {
+            let dropped = flight.intake.dropped();
+            flight.feed.push_until(&mut flight.pipeline, taken.time_s);
+            let cue = flight.pipeline.process(&taken.image.frame()?, taken.time_s)?;
+            let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
+            let timing = Timing {
+                age_ms: milliseconds(taken.there.elapsed()),
+                latency_ms: milliseconds(cue.latency),
+                dropped,
+            };
+            flight.summary.add(cue.invalid, cue.threat.is_some_and(|threat| threat.alarm));
+            let read = self.say(taken.number, &cue, timing)?;
+            if !(read && flight.intake.next(&mut taken)?) {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Says what there is to say of a frame. Returns false if nobody listens any more.
+    fn say(&self, number: u64, cue: &Cue<'_>, timing: Timing) -> Result<bool> {
+        if self.quiet || self.json {
+            return Ok(true);
+        }
+        let mut text = match self.json_lines {
+            true => print::one_line(&Line::new(number, cue, timing, self.sector_detail))?,
+            false => line::text(number, cue),
+        };
+        text.push('\n');
+        print::offer(text.as_bytes())
+    }
+
+    fn times(&self, source: &Source) -> Result<Times> {
+        if let Some(path) = &self.times {
+            return Times::read(path, source.len(), self.start_s);
+        }
+        let rate = self.fps.or_else(|| source.rate().map(Rate::of_fraction));
+        Ok(Times::even(rate.unwrap_or(Rate::DEFAULT), self.start_s))
+    }
+
+    /// A camera without a lens, with square pixels and its axis through the middle.
+    fn pinhole(&self, size: Size) -> Result<Camera> {
+        let fov_deg = self.fov_deg.unwrap_or(f64::NAN);
+        if !(1.0..=170.0).contains(&fov_deg) {
+            return Err(Error::parameter("--fov-deg", fov_deg, "1 to 170"));
+        }
+        let f = 0.5 * f64::from(size.width) / (0.5 * fov_deg.to_radians()).tan();
+        let middle = |side: u32| 0.5 * (f64::from(side) - 1.0);
+        let (u_0, v_0) = (middle(size.width), middle(size.height));
+        Ok(Camera { size, f_u: f, f_v: f, u_0, v_0, lens: Lens::NONE })
+    }
+}
+
+/// What a run goes on with.
+struct Flight {
+    pipeline: Pipeline,
+    feed: Feed,
+    intake: Intake,
+    summary: Summary,
+}
