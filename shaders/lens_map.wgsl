@@ -14,7 +14,8 @@ struct Params {
     limit: vec2f,  // of r², up to which the lens is one to one, and how steeply the certainty falls to it
     middle: vec2f, // of the raw picture
     margin: vec2f, // pixels within its border
-    padding: vec2f,
+    masked: u32, // 0 if the mask is 1 everywhere
+    padding: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -42,7 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let covered = clamp((within + 1.0) / (params.margin + 1.0), vec2f(), vec2f(1.0));
     map[2u * id.y * stride + id.x] = held.x;
     map[(2u * id.y + 1u) * stride + id.x] = held.y;
-    certainty[id.y * stride + id.x] = seen.share * covered.x * covered.y * trusted(held);
+    certainty[id.y * stride + id.x] = seen.share * covered.x * covered.y * select(1.0, trusted(held), params.masked != 0u);
 }
 
 struct Ideal {

@@ -51,7 +51,7 @@ fn reference(p: &Params, flow: &[f32], motion: &[f32], certainty: &[f32], trust:
     let motion = rows(motion);
     let pinhole = Pinhole { focal: p.focal, centre: p.centre };
     let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(cells, &mut [], Split::rows_of(5 * out_stride), #[inline(always)] |band| {
+    bands(cells, &mut [], Split { dearer: 8, ..Split::rows_of(5 * out_stride) }, #[inline(always)] |band| {
         for (i, rows) in band.out.chunks_exact_mut(5 * out_stride).enumerate() {
             let row = band.y0 + i;
             for column in 0..columns {

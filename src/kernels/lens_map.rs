@@ -47,8 +47,10 @@ params! {
         middle: [f32; 2],
         /// Pixels within its border over which the certainty grows to the mask's.
         margin: [f32; 2],
+        /// 0 if the mask is 1 everywhere and need not be read.
+        masked: u32,
         /// Nothing: the struct's size is a multiple of 16.
-        padding: [f32; 2],
+        padding: u32,
     }
 }
 
@@ -75,13 +77,19 @@ impl Params {
             limit: pair([limit, 1.0 / (FADE * limit)]),
             middle: pair([middle(raw.size.width), middle(raw.size.height)]),
             margin: [0.0; 2],
-            padding: [0.0; 2],
+            masked: 1,
+            padding: 0,
         }
     }
 
     /// The same with a certainty that grows over this many pixels within the raw picture's border.
     pub fn with_margin(self, margin_px: f32) -> Self {
         Self { margin: [margin_px; 2], ..self }
+    }
+
+    /// The same where the mask is 1 everywhere, and not read.
+    pub fn without_mask(self) -> Self {
+        Self { masked: 0, ..self }
     }
 }
 
@@ -121,22 +129,23 @@ fn reference(p: &Params, motion: &[f32], mask: &[f32], map: &mut [f32], certaint
             for (i, (map, certainty)) in rows {
                 let (map_x, map_y) = map.split_at_mut(stride);
                 let y = ((band.y0 + i) as f32 - p.out_centre[1]) / p.out_focal[1];
-                for x in 0..width {
-                    let out = [(x as f32 - p.out_centre[0]) / p.out_focal[0], y];
-                    let (place, share) = ideal(p, turned(&motion, [out[0], out[1], 1.0]));
-                    let [x_d, y_d] = distort(place, p.lens_a, p.lens_b);
-                    let [u, v] = near(
-                        p,
-                        [p.raw_focal[0] * x_d + p.raw_centre[0], p.raw_focal[1] * y_d + p.raw_centre[1]],
-                    );
-                    let held = [hold(u, last[0]), hold(v, last[1])];
-                    let covered = |place: f32, i: usize| {
-                        let within = place.min(last[i] - place);
-                        ((within + 1.0) / (p.margin[i] + 1.0)).clamp(0.0, 1.0)
-                    };
-                    map_x[x] = held[0];
-                    map_y[x] = held[1];
-                    certainty[x] = share * covered(u, 0) * covered(v, 1) * bilinear(mask, raw, held, trust);
+                for x0 in (0..width).step_by(BLOCK) {
+                    // Whole blocks, so that the compiler makes vectors of them.
+                    let mut blocks = [[0.0; BLOCK]; 3];
+                    #[allow(clippy::needless_range_loop, reason = "three arrays are filled at once")]
+                    for i in 0..BLOCK {
+                        let x = ((x0 + i) as f32 - p.out_centre[0]) / p.out_focal[0];
+                        [blocks[0][i], blocks[1][i], blocks[2][i]] = look(p, &motion, last, [x, y]);
+                    }
+                    let count = (width - x0).min(BLOCK);
+                    for (row, block) in [&mut *map_x, &mut *map_y, &mut *certainty].into_iter().zip(&blocks) {
+                        row[x0..x0 + count].copy_from_slice(&block[..count]);
+                    }
+                }
+                if p.masked != 0 {
+                    for ((certainty, x), y) in certainty.iter_mut().zip(&*map_x).zip(&*map_y).take(width) {
+                        *certainty *= bilinear(mask, raw, [*x, *y], trust);
+                    }
                 }
                 repeat_last(map_x, width);
                 repeat_last(map_y, width);
@@ -146,21 +155,37 @@ fn reference(p: &Params, motion: &[f32], mask: &[f32], map: &mut [f32], certaint
     );
 }
 
+/// Pixels worked on at a time.
+const BLOCK: usize = 32;
+
+/// Where in the raw frame a place of the result's plane lies, and how far it is seen at all. Both sides of every choice are
+/// computed: branches would keep the compiler from making vectors of it.
+#[inline(always)]
+fn look(p: &Params, motion: &[[f32; 4]; 4], last: [f32; 2], [x, y]: [f32; 2]) -> [f32; 3] {
+    let (place, share) = ideal(p, turned(motion, [x, y, 1.0]));
+    let [x_d, y_d] = distort(place, p.lens_a, p.lens_b);
+    let [u, v] = near(p, [p.raw_focal[0] * x_d + p.raw_centre[0], p.raw_focal[1] * y_d + p.raw_centre[1]]);
+    let covered = |place: f32, i: usize| {
+        let within = place.min(last[i] - place);
+        ((within + 1.0) / (p.margin[i] + 1.0)).clamp(0.0, 1.0)
+    };
+    [hold(u, last[0]), hold(v, last[1]), share * covered(u, 0) * covered(v, 1)]
+}
+
 /// Where an ideal pinhole shows a ray, and 0 to 1 how far it is seen at all. A ray that the lens does not show is put on
 /// the circle where that begins, so that rounding does not make it jump.
 #[inline(always)]
 fn ideal(p: &Params, [x, y, z]: [f32; 3]) -> ([f32; 2], f32) {
     let [limit, fall] = p.limit;
     let across = x * x + y * y;
-    if z > 0.0 && across < limit * z * z {
-        let [x, y] = [x / z, y / z];
-        return ([x, y], ((limit - (x * x + y * y)) * fall).clamp(0.0, 1.0));
-    }
-    if !(across > 1e-30 && across < 1e30) {
-        return ([0.0; 2], 0.0);
-    }
-    let scale = (limit / across).sqrt();
-    ([x * scale, y * scale], 0.0)
+    let shown = (z > 0.0) & (across < limit * z * z);
+    let inverse = if shown { z } else { 1.0 };
+    let [in_x, in_y] = [x / inverse, y / inverse];
+    let share = ((limit - (in_x * in_x + in_y * in_y)) * fall).clamp(0.0, 1.0);
+    let known = (across > 1e-30) & (across < 1e30);
+    let scale = (limit / if known { across } else { 1.0 }).sqrt();
+    let [on_x, on_y] = if known { [x * scale, y * scale] } else { [0.0; 2] };
+    if shown { ([in_x, in_y], share) } else { ([on_x, on_y], 0.0) }
 }
 
 /// A place more than a pixel outside the frame, drawn to its middle until it is that near. Holding each coordinate by
@@ -170,7 +195,10 @@ fn near(p: &Params, [u, v]: [f32; 2]) -> [f32; 2] {
     let [c_u, c_v] = p.middle;
     let (d_u, d_v) = (u - c_u, v - c_v);
     let most = (d_u.abs() / (c_u + 1.0)).max(d_v.abs() / (c_v + 1.0));
-    if most > 1.0 { [c_u + d_u / most, c_v + d_v / most] } else { [u, v] }
+    let outside = most > 1.0;
+    let times = if outside { most } else { 1.0 };
+    let drawn = [c_u + d_u / times, c_v + d_v / times];
+    [if outside { drawn[0] } else { u }, if outside { drawn[1] } else { v }]
 }
 
 /// A value held within 0 to 1. What is not a number is not trusted.

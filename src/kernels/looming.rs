@@ -101,7 +101,7 @@ fn reference(p: &Params, cells: &[f32], motion: &[f32], looming: &mut [f32]) {
     let [v_x, v_y, v_z, v_error] = rows(motion)[3];
     let (radius, inner) = (p.radius as isize, p.inner as isize);
     let side = (2 * radius + 1) as f32;
-    bands(looming, &mut [], Split::rows_of(4 * stride), #[inline(always)] |band| {
+    bands(looming, &mut [], Split { dearer: 16, ..Split::rows_of(4 * stride) }, #[inline(always)] |band| {
         for (i, out) in band.out.chunks_exact_mut(4 * stride).enumerate() {
             let row = (band.y0 + i) as isize;
             for column in 0..columns as isize {

@@ -37,6 +37,8 @@ pub(crate) struct Split {
     pub(crate) third_row: usize,
     /// Values of scratch that a band needs.
     pub(crate) scratch: usize,
+    /// How much dearer a value is than a usual one; 0 stands for 1.
+    pub(crate) dearer: usize,
 }
 
 impl Split {
@@ -59,7 +61,7 @@ pub(crate) fn bands_of_three<F: Fn(Band<'_>) + Sync>(outputs: [&mut [f32]; 3], s
 
 fn halve<F: Fn(Band<'_>) + Sync>(y0: usize, [out, second, third]: [&mut [f32]; 3], split: Split, f: &F) {
     let rows = out.len() / split.row;
-    if rows < 16 || out.len() < SMALLEST_SHARE {
+    if rows < 16 || out.len() * split.dearer.max(1) < SMALLEST_SHARE {
         return vectorised(y0, [out, second, third], split.scratch, f);
     }
     let half = rows / 2;

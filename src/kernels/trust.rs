@@ -93,7 +93,7 @@ fn reference(
     let quad_0 = fours(quad_0);
     let second = Second { quad: fours(quad_1), cross_term: cross_term_1, width, height, stride };
     let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(trust, &mut [], Split::rows_of(out_stride), #[inline(always)] |band| {
+    bands(trust, &mut [], Split { dearer: 32, ..Split::rows_of(out_stride) }, #[inline(always)] |band| {
         for (i, out) in band.out.chunks_exact_mut(out_stride).enumerate() {
             let row = band.y0 + i;
             for (column, out) in out[..columns].iter_mut().enumerate() {

@@ -45,7 +45,7 @@ impl Default for Sphere {
         Self {
             derotation: Derotation::default(),
             cell: 8,
-            step: 2,
+            step: 4,
             window: 2,
             sectors: [24, 9],
             quantile: 0.8,

@@ -51,7 +51,7 @@ struct Front<'a> {
     mask: Option<BufId>,
     /// No turn.
     still: BufId,
-    margin: f32,
+    lens: lens_map::Params,
 }
 
 /// A resampling.
@@ -64,6 +64,7 @@ struct Map {
 impl<'a> Front<'a> {
     fn new(bufs: &mut Bufs, eye: Eye<'a>, view: &Sphere, format: PixelFormat) -> Self {
         let (raw, ideal) = (eye.raw.size, eye.ideal.size);
+        let lens = lens_map::Params::new(eye.ideal, eye.raw).with_margin(view.margin_px as f32);
         let turns = eye.gyro && view.derotation == Derotation::Before;
         let plain = eye.raw == eye.ideal && eye.raw.lens == Lens::NONE && eye.mask.is_none();
         let map = |bufs: &mut Bufs, name: &str| Map {
@@ -91,7 +92,10 @@ impl<'a> Front<'a> {
             map: undistort,
             turned,
             still: bufs.constant("no turn", vec![0.0; MOTION_LEN]),
-            margin: view.margin_px as f32,
+            lens: match eye.mask {
+                Some(_) => lens,
+                None => lens.without_mask(),
+            },
         }
     }
 
@@ -105,7 +109,7 @@ impl<'a> Front<'a> {
         Some(Step::new(
             &lens_map::KERNEL,
             label,
-            lens_map::Params::new(self.eye.ideal, self.eye.raw).with_margin(self.margin),
+            self.lens,
             &[motion, self.mask?],
             &[(map.places, Shape::planar(ideal, 2)), (map.certainty, Shape::planar(ideal, 1))],
         ))
