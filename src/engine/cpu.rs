@@ -8,6 +8,7 @@ use super::slots::{Begin, Job, Results};
 use super::{Config, Extras};
 use crate::cpu::CpuExecutor;
 use crate::frame::Frame;
+use crate::kernels::rows::SMALLEST_SHARE;
 use crate::plan::Plan;
 use crate::sphere::Motion;
 
@@ -93,6 +94,19 @@ impl CpuStream {
 
     /// Computes a started frame, until it is done or the time has come; at least one step. True if it is done.
     pub(super) fn work(&mut self, plan: &Plan, slot: usize, job: Job, until: Option<Instant>) -> bool {
+        // One call into the pool for all steps: each of them would wake its threads anew. Frames too small to be shared
+        // out stay on this thread.
+        let done = match plan.size.pixels() >= SMALLEST_SHARE {
+            true => rayon::join(|| self.steps(plan, slot, job, until), || ()).0,
+            false => self.steps(plan, slot, job, until),
+        };
+        if done {
+            self.keep(plan, slot, job);
+        }
+        done
+    }
+
+    fn steps(&mut self, plan: &Plan, slot: usize, job: Job, until: Option<Instant>) -> bool {
         let count = job.steps(plan);
         let progress = self.slots[slot].progress;
         for (i, step) in plan.steps(job.parity).enumerate().take(count).skip(progress) {
@@ -106,7 +120,6 @@ impl CpuStream {
                 return false;
             }
         }
-        self.keep(plan, slot, job);
         true
     }
 

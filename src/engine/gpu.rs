@@ -116,7 +116,7 @@ impl GpuStream {
                 clock.copy(&mut encoder, job.steps(plan), readback, layout);
             }
         }
-        *submission = Some(gpu.queue.submit([encoder.finish()]));
+        *submission = Some(gpu.submit(encoder));
         // That mapping worked shows when the range is asked for. Closures that hold nothing are not allocated.
         upload.map_async(MapMode::Write, .., |_| {});
         if let Some(readback) = readback.as_ref().filter(|_| *mapped) {

@@ -113,7 +113,7 @@ impl GpuExecutor {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             dispatches(&plan.setup)?.iter().for_each(|dispatch| dispatch.record(&mut pass));
             drop(pass);
-            gpu.queue.submit([encoder.finish()]);
+            gpu.submit(encoder);
         }
         Ok(Self { gpu: gpu.clone(), bufs, ingest, pair })
     }
@@ -179,7 +179,7 @@ impl GpuExecutor {
         if let Some(dispatch) = dispatch {
             dispatch.record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
         }
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submit(encoder);
         self.gpu.finish()
     }
 }
@@ -261,7 +261,7 @@ fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &target, 0, size);
-    gpu.queue.submit([encoder.finish()]);
+    gpu.submit(encoder);
     // Whether mapping worked shows when the range is asked for.
     target.map_async(wgpu::MapMode::Read, .., |_| {});
     gpu.finish()?;
@@ -290,6 +290,6 @@ pub(super) fn run_alone(
     let dispatch = pipeline.dispatch(gpu, kernel.name, params.as_entire_binding(), &buffers, extent);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     dispatch.record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
-    gpu.queue.submit([encoder.finish()]);
+    gpu.submit(encoder);
     outputs.into_iter().map(|(buffer, len)| read(gpu, &buffer, len)).collect()
 }

@@ -157,6 +157,14 @@ impl Gpu {
         }
     }
 
+    /// Submits what was recorded.
+    pub(crate) fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
+        let commands = encoder.finish();
+        // A submission looks after finished mappings, as polling does.
+        let _alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        self.queue.submit([commands])
+    }
+
     fn poll_once(&self, kind: PollType) -> Result<bool> {
         // wgpu asserts that nobody else empties the queue while it polls: one thread at a time, for a slice of time.
         let alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

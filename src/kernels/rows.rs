@@ -10,7 +10,7 @@ use pulp::{Arch, NullaryFnOnce};
 use crate::frame::Size;
 
 /// Below this many values a piece of work stays on one core: handing it over would cost more.
-const SMALLEST_SHARE: usize = 1 << 15;
+pub(crate) const SMALLEST_SHARE: usize = 1 << 15;
 
 /// The output rows `y0 .. y0 + rows` of up to three buffers, and room to work in.
 pub(crate) struct Band<'a> {

@@ -194,7 +194,7 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 impl Times {
-    fn new(mut ms: Vec<f64>) -> Self {
+    pub(super) fn new(mut ms: Vec<f64>) -> Self {
         ms.sort_by(f64::total_cmp);
         // The nearest rank.
         let rank = |percent: usize| ms[(ms.len() * percent).div_ceil(100).max(1) - 1];

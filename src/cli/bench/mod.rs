@@ -2,6 +2,7 @@
 
 mod copy;
 mod measure;
+mod pipeline;
 mod serve;
 mod show;
 
@@ -12,6 +13,7 @@ use super::args::FlowArgs;
 use super::backend::BackendArgs;
 use super::{Outcome, print};
 use crate::error::{Error, Result};
+use crate::flow::Farneback;
 use crate::frame::Size;
 
 /// Time a frame and each kernel, on the GPU and on the CPU.
@@ -26,6 +28,7 @@ Examples:
   viewsphere bench
   viewsphere bench --size 640x480 1280x720 --preset fast --frames 200
   viewsphere bench --backend gpu --adapter llvmpipe --json
+  viewsphere bench --pipeline                        what the way on to the sectors of the view costs
   viewsphere bench --serve                           answer requests, one JSON object a line; see benches/opencv.py")]
 pub(super) struct Bench {
     /// Sizes of the frames
@@ -37,6 +40,9 @@ pub(super) struct Bench {
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
+    /// Time whole pipelines, from raw frames to sectors, against the flow alone, in turns
+    #[arg(long, conflicts_with = "serve")]
+    pipeline: bool,
     /// Answer requests on standard input, one JSON object a line, until it ends
     #[arg(long)]
     serve: bool,
@@ -55,12 +61,33 @@ impl Bench {
         if !(2..=100_000).contains(&self.frames) {
             return Err(Error::parameter("--frames", self.frames, "2 to 100000"));
         }
+        if self.pipeline {
+            return self.pipelines(&config);
+        }
         let mut results: Vec<Figures> = Vec::new();
         for backend in self.backend.open_all()? {
             for &size in &self.size {
                 let figures = measure::measure(&backend, size, &config, self.frames)?;
                 if !self.json {
                     print::text(&show::text(&figures))?;
+                    print::text("")?;
+                }
+                results.push(figures);
+            }
+        }
+        if self.json {
+            print::json(&results)?;
+        }
+        Ok(Outcome::Done)
+    }
+
+    fn pipelines(&self, flow: &Farneback) -> Result<Outcome> {
+        let mut results = Vec::new();
+        for backend in self.backend.open_all()? {
+            for &size in &self.size {
+                let figures = pipeline::measure(&backend, size, flow, self.frames)?;
+                if !self.json {
+                    print::text(&pipeline::text(&figures))?;
                     print::text("")?;
                 }
                 results.push(figures);

@@ -9,10 +9,14 @@ use clap::Args;
 
 use super::args::FlowArgs;
 use super::{Outcome, input, print};
+use crate::camera::{Camera, Lens, View};
 use crate::error::{Error, Result};
 use crate::eval::Scene;
-use crate::frame::{Image, Size};
+use crate::flow::Farneback;
+use crate::frame::{Image, Plane, Size};
 use crate::gpu::{Gpu, GpuOptions};
+use crate::plan::Plan;
+use crate::sphere::{Eye, Fields, Sphere, plan};
 
 /// Compare the GPU with the CPU, step by step.
 ///
@@ -24,6 +28,7 @@ use crate::gpu::{Gpu, GpuOptions};
 Examples:
   viewsphere crosscheck                              a made-up pair of 640×480
   viewsphere crosscheck a.png b.png --steps
+  viewsphere crosscheck --sphere                     on to the sectors of the view, through a lens and a turn
   viewsphere crosscheck --size 1280x720 --preset accurate --adapter llvmpipe --json")]
 pub(super) struct Crosscheck {
     /// Two pictures of one size; without them a made-up textured pair
@@ -35,6 +40,10 @@ pub(super) struct Crosscheck {
     /// Also check the certainty weighting, with this picture (black 0, white 1) or .npy as certainty of both frames
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
+    /// Check the whole way to the sectors of the view: a made-up lens taken out and a made-up turn, then the flow, cells
+    /// and sectors
+    #[arg(long)]
+    sphere: bool,
     /// Part of the name of the GPU adapter to check; without it the best one, software adapters too
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -54,7 +63,7 @@ pub(super) struct Crosscheck {
 impl Crosscheck {
     pub(super) fn run(&self) -> Result<Outcome> {
         let mut config = self.flow.farneback()?;
-        config.confidence = true;
+        config.confidence = !self.sphere;
         config.certainty = self.mask.is_some();
         if !(self.bounds.is_finite() && self.bounds >= 0.0) {
             return Err(Error::parameter("--bounds", self.bounds, "a finite number of 0 or more"));
@@ -63,8 +72,11 @@ impl Crosscheck {
         let certainty = self.mask.as_ref().map(|path| input::plane(path, pair[0].size, &name)).transpose()?;
         let gpu = Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })?;
         print::note(format_args!("checking {}", gpu.adapter()));
-        let plan = config.plan(pair[0].size, pair[0].format)?;
-        if certainty.is_some() && plan.certainty.is_none() {
+        let plan = match self.sphere {
+            true => sphere_plan(&config, &pair[0], certainty.as_ref())?,
+            false => config.plan(pair[0].size, pair[0].format)?,
+        };
+        if !self.sphere && certainty.is_some() && plan.certainty.is_none() {
             return Err(Error::parameter("--mask", "given", "none: the plan takes no certainty"));
         }
         let report = run::run(&gpu, &plan, &pair, certainty.as_ref(), self.bounds)?;
@@ -84,4 +96,15 @@ impl Crosscheck {
         let scene = Scene::new(self.size.unwrap_or(Size::new(640, 480)))?;
         Ok(([scene.frame(0), scene.frame(1)], PathBuf::from("the made-up pair")))
     }
+}
+
+/// The plan to the sectors, for a wide camera with a lens of the usual barrel distortion.
+fn sphere_plan(flow: &Farneback, image: &Image, mask: Option<&Plane>) -> Result<Plan> {
+    let [width, height] = [image.size.width, image.size.height].map(f64::from);
+    let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
+    let (f_u, f_v) = (0.53 * width, 0.53 * width);
+    let raw = Camera { size: image.size, f_u, f_v, u_0: 0.504 * width, v_0: 0.492 * height, lens };
+    let eye = Eye { raw: &raw, ideal: &raw.ideal(image.size, View::CropToValid)?, mask, gyro: true };
+    let fields = Fields { tangent: true, ..Fields::default() };
+    Ok(plan(flow, &Sphere::default(), eye, image.format, fields)?.0)
 }

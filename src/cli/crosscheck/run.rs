@@ -1,5 +1,6 @@
 //! The comparison itself.
 
+use glam::{DMat3, DVec3};
 use serde::Serialize;
 
 use crate::cli::buffers::{put_frame, put_plane, take_flow};
@@ -11,6 +12,7 @@ use crate::gpu::{Gpu, GpuExecutor};
 use crate::kernel::Tolerance;
 use crate::kernels::compare::{Difference, POISON, compare};
 use crate::plan::{BufId, Content, Plan, Shape, Step};
+use crate::sphere::{Heading, Motion};
 
 /// What was found.
 #[derive(Debug, Serialize)]
@@ -102,6 +104,13 @@ pub(super) fn run(
         put_plane(plane, sides.cpu.buf_mut(id));
         sides.alone.write(id, sides.cpu.buf(id));
     }
+    if let Some(motion) = plan.motion {
+        sides.cpu.buf_mut(motion).copy_from_slice(&turn().values());
+        sides.alone.write(motion, sides.cpu.buf(motion));
+    }
+    for step in &plan.setup {
+        sides.compare(step, "once".to_owned(), &mut report)?;
+    }
     for (parity, image) in pair.iter().enumerate() {
         put_frame(&image.frame()?, sides.cpu.buf_mut(plan.frame));
         sides.alone.write(plan.frame, sides.cpu.buf(plan.frame));
@@ -113,11 +122,18 @@ pub(super) fn run(
     }
     report.breaches = report.steps.iter().map(|step| step.breaches).sum();
     let id = plan.flow[1];
-    let expected = take_flow(sides.cpu.buf(id), plan.size);
-    let found = take_flow(&sides.alone.read(id, plan.buf(id).len)?, plan.size);
+    let expected = take_flow(sides.cpu.buf(id), plan.flow_size);
+    let found = take_flow(&sides.alone.read(id, plan.buf(id).len)?, plan.flow_size);
     let error = endpoint_error(&expected, &found)?;
     report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, ANY));
     Ok(report)
+}
+
+/// A turn of some degrees, and a direction of motion beside the camera's axis.
+fn turn() -> Motion {
+    let axis = DVec3::new(0.2, -0.5, 0.8).normalize();
+    let heading = Heading { direction: DVec3::new(0.08, -0.03, 1.0).normalize(), error_rad: 0.02 };
+    Motion { prev_from_cur: DMat3::from_axis_angle(axis, 0.04), heading }
 }
 
 /// For figures alone.
@@ -139,7 +155,11 @@ impl Sides<'_> {
         self.cpu.run(step);
         self.corrected.run(parity, index)?;
         self.alone.run(parity, index)?;
-        let name = format!("frame {parity}, {}", step.label);
+        self.compare(step, format!("frame {parity}, {}", step.label), report)
+    }
+
+    /// Holds what a step left on the GPU against what it left on the CPU.
+    fn compare(&self, step: &Step, name: String, report: &mut Report) -> Result<()> {
         for (&(id, shape), &output) in step.outputs.iter().zip(step.kernel.outputs) {
             let tolerance = self.tolerance(step, &self.cpu.buf(id)[..shape.len()]);
             let difference = self.difference(&self.corrected, id, shape, tolerance)?;

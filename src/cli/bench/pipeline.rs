@@ -1,0 +1,146 @@
+//! What the way from the flow to the sectors costs: whole pipelines against the flow alone, frame by frame in one run.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::measure::Times;
+use crate::camera::{Camera, Lens};
+use crate::cli::print::table;
+use crate::engine::{Backend, Config, Engine};
+use crate::error::Result;
+use crate::eval::Scene;
+use crate::flow::Farneback;
+use crate::frame::{Image, Size};
+use crate::imu::{GyroConfig, GyroSample};
+use crate::pipeline::{Pipeline, PipelineConfig};
+use crate::sphere::{Derotation, Sphere};
+
+/// Frames before the clock counts.
+const WARM_UP: u32 = 4;
+/// Frames of the made-up scene.
+const FRAMES: u32 = 6;
+/// Frames a second.
+const RATE_HZ: f64 = 30.0;
+
+/// One contender.
+#[derive(Debug, Serialize)]
+pub(super) struct Contender {
+    pub(super) name: &'static str,
+    pub(super) ms: Times,
+    /// Medians of the ratios, frame by frame, to the flow alone in a stream and of separate pairs.
+    pub(super) of_stream: f64,
+    pub(super) of_pairs: f64,
+}
+
+/// Everything measured for one backend and size.
+#[derive(Debug, Serialize)]
+pub(super) struct PipelineFigures {
+    pub(super) backend: String,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) frames: u32,
+    pub(super) contenders: Vec<Contender>,
+}
+
+/// Something that is run once a frame.
+type Frame<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
+
+/// Measures one backend at one size.
+pub(super) fn measure(
+    backend: &Backend,
+    size: Size,
+    flow: &Farneback,
+    frames: u32,
+) -> Result<PipelineFigures> {
+    let scene = Scene::new(size)?;
+    let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
+    let image = |number: u32| images[(number % FRAMES) as usize].frame();
+    let config = Config { flow: flow.clone(), read_flow: false, ..Config::default() };
+    let mut stream = Engine::new(backend.clone(), size, &config)?;
+    let mut pairs = Engine::new(backend.clone(), size, &config)?;
+    let name = stream.adapter();
+    let mut contenders: Vec<(&'static str, Frame<'_>)> = vec![
+        ("flow alone, stream", Box::new(|number| stream.process(&image(number)?).map(|_| ()))),
+        (
+            "flow alone, separate pairs",
+            Box::new(|number| {
+                pairs.reset();
+                pairs.process(&image(number + 1)?)?;
+                pairs.process(&image(number)?).map(|_| ())
+            }),
+        ),
+    ];
+    let gyro = Some(GyroConfig::default());
+    for (name, gyro, derotation, certainty) in [
+        ("to sectors, no gyro", None, Derotation::Before, false),
+        ("to sectors, turn taken out after", gyro, Derotation::After, false),
+        ("to sectors, search primed", gyro, Derotation::Primed, false),
+        ("to sectors, turn taken out before", gyro, Derotation::Before, false),
+        ("the same, with certainty", gyro, Derotation::Before, true),
+    ] {
+        let flow = Farneback { certainty, ..flow.clone() };
+        let config = PipelineConfig {
+            engine: Config { flow, ..config.clone() },
+            sphere: Sphere { derotation, ..Sphere::default() },
+            gyro,
+            ..PipelineConfig::default()
+        };
+        let mut pipeline = Pipeline::new(backend.clone(), &camera(size)?, &config)?;
+        let run = move |number: u32| {
+            let time_s = f64::from(number) / RATE_HZ;
+            for i in 0..4 {
+                let gyro_rad_s = DVec3::new(0.1, -0.4, 0.8);
+                let time_s = time_s + f64::from(i) / (4.0 * RATE_HZ);
+                pipeline.push_gyro(GyroSample { time_s, gyro_rad_s });
+            }
+            pipeline.process(&image(number)?, time_s).map(|_| ())
+        };
+        contenders.push((name, Box::new(run)));
+    }
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); contenders.len()];
+    for number in 0..frames + WARM_UP {
+        for (times, (_, run)) in times.iter_mut().zip(&mut contenders) {
+            let start = Instant::now();
+            run(number)?;
+            if number >= WARM_UP {
+                times.push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+    }
+    let ratio =
+        |of: &[f64], to: &[f64]| Times::new(of.iter().zip(to).map(|(of, to)| of / to).collect()).median;
+    let figures = |(times_of, (name, _)): (&Vec<f64>, &(&'static str, Frame<'_>))| Contender {
+        name,
+        ms: Times::new(times_of.clone()),
+        of_stream: ratio(times_of, &times[0]),
+        of_pairs: ratio(times_of, &times[1]),
+    };
+    let contenders = times.iter().zip(&contenders).map(figures).collect();
+    Ok(PipelineFigures { backend: name, width: size.width, height: size.height, frames, contenders })
+}
+
+/// A wide camera with a lens of the usual barrel distortion.
+fn camera(size: Size) -> Result<Camera> {
+    let [width, height] = [size.width, size.height].map(f64::from);
+    let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
+    Ok(Camera { size, f_u: 0.53 * width, f_v: 0.53 * width, u_0: 0.504 * width, v_0: 0.492 * height, lens })
+}
+
+/// What was measured, as text.
+pub(super) fn text(figures: &PipelineFigures) -> String {
+    let head = ["", "median ms", "p99 ms", "of the stream", "of the pairs"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for contender in &figures.contenders {
+        rows.push(vec![
+            contender.name.to_owned(),
+            format!("{:.2}", contender.ms.median),
+            format!("{:.2}", contender.ms.p99),
+            format!("{:.2}", contender.of_stream),
+            format!("{:.2}", contender.of_pairs),
+        ]);
+    }
+    let PipelineFigures { width, height, backend, frames, .. } = figures;
+    format!("{width}×{height} on {backend}, {frames} frames, in turns\n{}", table(&rows))
+}
