@@ -42,6 +42,7 @@ pub mod kernel;
 pub mod kernels;
 pub mod pipeline;
 pub mod plan;
+pub mod report;
 pub mod sim;
 pub mod sphere;
 

@@ -10,7 +10,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::camera::{self, Camera, Format, Lens};
 use viewsphere::eval::Scene;
-use viewsphere::frame::{Image, PixelFormat, Size, Y4mWriter, picture};
+use viewsphere::frame::{Image, PixelFormat, Size, Y4mReader, Y4mWriter, picture};
 
 const SIZE: Size = Size::new(96, 72);
 const FRAMES: u32 = 8;
@@ -292,6 +292,37 @@ fn an_overload_drops_frames_and_counts_them() {
 }
 
 #[test]
+fn an_overlay_shows_every_frame_and_is_whole_or_not_there() {
+    let folder = flight();
+    let bytes = fs::read(folder.path().join("a.y4m")).unwrap();
+    fs::write(folder.path().join("cut.y4m"), &bytes[..bytes.len() - 100]).unwrap();
+    let frames = |name: &str| {
+        let bytes = fs::read(folder.path().join(name)).unwrap();
+        let mut video = Y4mReader::new(&bytes[..], name).unwrap();
+        assert_eq!((video.size(), video.rate()), (SIZE, Some((30, 1))), "{name}");
+        let mut image = Image::default();
+        while video.next_frame(&mut image).unwrap() {}
+        assert!(image.data.iter().max() > image.data.iter().min(), "{name}");
+        video.frames_read()
+    };
+    run(&folder, &["a.y4m", "--fov-deg", "90", "--quiet", "--overlay", "o.y4m"]).well();
+    assert_eq!(frames("o.y4m"), u64::from(FRAMES));
+    // What was processed before the end of a video that was cut off is there.
+    assert_eq!(run(&folder, &["cut.y4m", "--fov-deg", "90", "--overlay", "c.y4m"]).code, Some(2));
+    assert_eq!(frames("c.y4m"), u64::from(FRAMES - 1));
+    for (path, words) in [
+        ("o.mp4", &["o.mp4", "expected .y4m"][..]),
+        ("missing/o.y4m", &["missing"]),
+        ("./", &["--overlay", "not a folder"]),
+        ("-", &["--overlay is -", "--quiet"]),
+    ] {
+        refused(&folder, &["a.y4m", "--fov-deg", "90", "--overlay", path], words);
+    }
+    let names = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    assert!(names.into_iter().all(|name| !name.ends_with(".tmp")));
+}
+
+#[test]
 fn a_summary_is_what_is_left_without_lines() {
     let folder = flight();
     let quiet = run(&folder, &["a.y4m", "--fov-deg", "90", "--quiet"]).well();
@@ -332,6 +363,7 @@ fn what_does_not_belong_together_is_refused() {
             &["camera_from_gyro"],
         ),
         (&["a.y4m", fov[0], fov[1], "--sectors", "300x1"], &["sectors is 300"]),
+        (&["a.y4m", fov[0], fov[1], "--within-s", "0"], &["within_s is 0", "above 0"]),
         (&["a.y4m", fov[0], fov[1], "--fps", "0"], &["0.001 to 1000000"]),
         (&["a.y4m", fov[0], fov[1], "--start-s", "inf"], &["--start-s is inf"]),
         (&["a.y4m", fov[0], fov[1], "--quiet", "--json-lines"], &["--json-lines"]),

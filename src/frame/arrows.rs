@@ -1,6 +1,7 @@
 //! Flow as arrows over the picture that it belongs to.
 
-use super::{FlowField, Frame, Image, PixelFormat, Size};
+use super::draw::{gray, line};
+use super::{FlowField, Frame, Image, Size};
 use crate::error::{Error, Result};
 
 /// Stands out from gray pictures, dark and bright.
@@ -9,7 +10,7 @@ const COLOUR: [u8; 3] = [255, 160, 0];
 const HEAD: f64 = 0.3;
 const MAX_HEAD: f64 = 6.0;
 
-/// The frame in gray as [`PixelFormat::Rgb8`], with an arrow every `step` pixels in both directions.
+/// The frame in gray as [`PixelFormat::Rgb8`](super::PixelFormat::Rgb8), with an arrow every `step` pixels in both directions.
 ///
 /// An arrow begins at its pixel and is `gain` times as long as the displacement there. No arrow where the displacement
 /// is unknown; a dot where it is shorter than half a pixel after `gain`.
@@ -46,84 +47,26 @@ pub fn arrows(frame: &Frame<'_>, flow: &FlowField, step: u32, gain: f32) -> Resu
     Ok(image)
 }
 
-fn gray(frame: &Frame<'_>) -> Image {
-    let size = frame.size();
-    let mut data = Vec::with_capacity(3 * size.pixels());
-    for y in 0..size.height {
-        for pixel in frame.row(y).chunks_exact(frame.format().bytes()) {
-            let luma = match *pixel {
-                [gray] => gray,
-                [low, high] => (u16::from_ne_bytes([low, high]) >> 8) as u8,
-                // BT.601, in 1/256.
-                [r, g, b, ..] => ((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b)) >> 8) as u8,
-                [] => 0,
-            };
-            data.extend([luma; 3]);
-        }
-    }
-    Image { size, format: PixelFormat::Rgb8, data }
-}
-
 fn arrow(image: &mut Image, from: [f64; 2], [u, v]: [f64; 2]) {
     let length = u.hypot(v);
     if length < 0.5 {
-        return line(image, from, from);
+        return line(image, from, from, COLOUR);
     }
     let tip = [from[0] + u, from[1] + v];
-    line(image, from, tip);
+    line(image, from, tip, COLOUR);
     let head = (length * HEAD).min(MAX_HEAD);
     let (along, across) = ([u / length, v / length], [-v / length, u / length]);
     for side in [-0.5, 0.5] {
         let end = std::array::from_fn(|i| tip[i] - head * (along[i] + side * across[i]));
-        line(image, tip, end);
+        line(image, tip, end, COLOUR);
     }
-}
-
-fn line(image: &mut Image, from: [f64; 2], to: [f64; 2]) {
-    let Some([from, to]) = clip(image.size, from, to) else { return };
-    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-    let steps = dx.abs().max(dy.abs()).ceil().max(1.0);
-    for i in 0..=steps as u32 {
-        let part = f64::from(i) / steps;
-        let (x, y) = ((from[0] + part * dx).round() as usize, (from[1] + part * dy).round() as usize);
-        let at = 3 * (y * image.size.width as usize + x);
-        if let Some(pixel) = image.data.get_mut(at..at + 3) {
-            pixel.copy_from_slice(&COLOUR);
-        }
-    }
-}
-
-/// The part of a line that lies in the picture (Liang and Barsky 1984). Without it, a displacement of a million pixels
-/// would be walked pixel by pixel.
-fn clip(size: Size, from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-    let most = [f64::from(size.width - 1), f64::from(size.height - 1)];
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for i in 0..2 {
-        let slope = to[i] - from[i];
-        for (p, q) in [(-slope, from[i]), (slope, most[i] - from[i])] {
-            if p == 0.0 && q < 0.0 {
-                return None;
-            }
-            if p < 0.0 {
-                enter = enter.max(q / p);
-            } else if p > 0.0 {
-                leave = leave.min(q / p);
-            }
-        }
-    }
-    if enter > leave {
-        return None;
-    }
-    // Rounding can leave the picture by a hair.
-    let at = |part: f64| std::array::from_fn(|i| (from[i] + part * (to[i] - from[i])).clamp(0.0, most[i]));
-    Some([at(enter), at(leave)])
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::frame::UNKNOWN_FLOW;
+    use crate::frame::{PixelFormat, UNKNOWN_FLOW};
 
     fn drawn(size: Size, uv: [f32; 2], step: u32, gain: f32) -> Vec<(usize, usize)> {
         let data = vec![40; size.pixels()];

@@ -6,6 +6,7 @@
 
 mod arrows;
 mod colour;
+mod draw;
 pub mod flo;
 mod flow_file;
 mod frames;
@@ -26,6 +27,7 @@ mod y4m_write;
 
 pub use arrows::arrows;
 pub use colour::colour_wheel;
+pub(crate) use draw::{line, luma};
 pub use flow_file::{read_flow, write_flow};
 pub use frames::Frames;
 pub use raw::RawReader;

@@ -103,13 +103,13 @@ impl Feed {
     }
 
     /// When a sample came, in the frames' time. That is not always what it states: one wild time must not hold up those
-    /// behind it, so it is the middle one of its own and its neighbours'.
+    /// behind it, so it is the middle one of its own and its neighbours', the earlier of two.
     fn arrival_s(&self, at: usize) -> Option<f64> {
         let around = at.saturating_sub(1)..(at + 2).min(self.samples.len());
         let mut times: Vec<f64> =
             self.samples[around].iter().map(|sample| sample.time_s).filter(|time| time.is_finite()).collect();
         times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).map(|time| time + self.offset_s)
+        times.get(times.len().saturating_sub(1) / 2).map(|time| time + self.offset_s)
     }
 }
 

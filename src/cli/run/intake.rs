@@ -4,7 +4,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::times::Times;
+use super::times::{Rate, Times};
 use crate::cli::flow::source::Source;
 use crate::error::{Error, Result};
 use crate::frame::Image;
@@ -43,6 +43,11 @@ impl Reader {
     /// What the last frame read is called.
     pub(super) fn name(&self) -> std::path::PathBuf {
         self.source.name()
+    }
+
+    /// Frames a second, or so many in the mean.
+    pub(super) fn rate(&self) -> Rate {
+        self.times.rate()
     }
 
     /// Reads the next frame. Returns false after the last one.

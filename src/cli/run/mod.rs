@@ -5,6 +5,7 @@ mod intake;
 mod line;
 mod summary;
 mod times;
+mod video;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -16,6 +17,7 @@ use self::intake::{Intake, Reader, Taken};
 use self::line::{Line, Timing};
 use self::summary::Summary;
 use self::times::{Rate, Times};
+use self::video::Video;
 use super::args::FlowArgs;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
@@ -25,7 +27,7 @@ use crate::engine::Config;
 use crate::error::{Error, Result};
 use crate::frame::{Image, Size};
 use crate::pipeline::{Cue, Pipeline, PipelineConfig};
-use crate::sphere::Sphere;
+use crate::sphere::{Alarm, Sphere};
 
 /// Say what will be met, where and when: time to contact per sector of the view, frame by frame.
 ///
@@ -48,7 +50,8 @@ Examples:
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv
   viewsphere run 'cam0/data/*.png' --camera cam0.yaml --times cam0/data.csv --gyro imu0/data.csv --camera-from-gyro frd
   viewsphere run flight.y4m --fov-deg 90 --json-lines | jq -c 'select(.threat.alarm) | [.time_s, .threat]'
-  viewsphere run flight.y4m --fov-deg 90 --realtime --quiet
+  viewsphere run flight.y4m --fov-deg 90 --quiet --overlay out.y4m
+  viewsphere run flight.y4m --fov-deg 90 --realtime --quiet --overlay - | ffplay -
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere run - --fov-deg 90
   ffmpeg -f v4l2 -i /dev/video0 -f yuv4mpegpipe - | viewsphere run - --camera cam.yaml --realtime")]
 pub(super) struct Run {
@@ -73,6 +76,14 @@ pub(super) struct Run {
     /// Columns and rows of sectors
     #[arg(long, value_name = "WxH", default_value = "24x9")]
     sectors: Size,
+    /// What is met within this time is a threat, above 0 and at most 60; an alarm if it was one in the frame before too
+    /// [default: 2]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    within_s: Option<f64>,
+    /// What is passed at less than this much flying time aside is met, 0 to 60: 0.4 is 2 m at 5 m/s. Low over a ground it
+    /// is a threat too [default: 0.4]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    aside_s: Option<f64>,
     /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
@@ -89,6 +100,12 @@ pub(super) struct Run {
     /// Print nothing but the summary, as JSON on standard output
     #[arg(long)]
     json: bool,
+    /// Write a video of the frames with what was made of them, to this .y4m or to standard output (-): the flow's colours,
+    /// each sector's time to contact (red below 1 s, orange 2 s, yellow 4 s, green 8 s), the threat and its time, the
+    /// direction of motion; a red border where the cue is invalid. There is no horizon, as the attitude is not known.
+    /// Frames that --realtime drops are not in it
+    #[arg(long, value_name = "FILE")]
+    overlay: Option<PathBuf>,
     /// Take frames as a camera would deliver them: those of files at their times, those of a stream as they come. Of those
     /// that come while one is computed the newest is kept, and the others are dropped and counted
     #[arg(long)]
@@ -109,14 +126,22 @@ impl Run {
         if !self.start_s.is_finite() {
             return Err(Error::parameter("--start-s", self.start_s, "a finite time"));
         }
+        let lines = self.json || !self.quiet;
+        let target = self.overlay.as_ref().map(|path| video::target(path, lines)).transpose()?;
+        let PipelineConfig { engine, alarm, .. } = PipelineConfig::default();
         let mut config = PipelineConfig {
-            engine: Config { flow: self.flow.farneback()?, ..PipelineConfig::default().engine },
+            engine: Config { flow: self.flow.farneback()?, read_flow: target.is_some(), ..engine },
             sphere: Sphere {
                 derotation: self.gyro.derotation(),
                 sectors: [self.sectors.width, self.sectors.height],
                 ..Sphere::default()
             },
             gyro: self.gyro.config()?,
+            alarm: Alarm {
+                within_s: self.within_s.unwrap_or(alarm.within_s),
+                aside_s: self.aside_s.unwrap_or(alarm.aside_s),
+                ..alarm
+            },
             ..PipelineConfig::default()
         };
         config.validate()?;
@@ -143,21 +168,34 @@ impl Run {
         let pipeline = Pipeline::new(self.backend.open()?, &camera, &config)?;
         // What it took to get ready is not the frame's age.
         first.there = Instant::now();
+        let (ideal, rate) = (*pipeline.ideal(), reader.rate().fraction());
         let intake = match self.realtime {
             true => Intake::newest(reader, &first, self.inputs == ["-"]),
             false => Intake::Each(Box::new(reader)),
         };
         let mut flight =
             Flight { summary: Summary::new(pipeline.engine().adapter()), pipeline, feed, intake };
-        let end = self.frames(&mut flight, first);
+        let mut end = Ok(());
+        let written = match target {
+            None => {
+                end = self.frames(&mut flight, first, None);
+                Ok(())
+            }
+            Some(place) => video::write(&place, |out| {
+                let mut video = Video::new(out, &place, [&camera, &ideal], rate)?;
+                // What was processed is shown, also where the source fails after it.
+                end = self.frames(&mut flight, first, Some(&mut video));
+                video.finish()
+            }),
+        };
         let Flight { summary, pipeline, intake, .. } = &mut flight;
         summary.finish(pipeline.engine().latency(), intake.dropped());
         summary.print(self.json)?;
-        end.map(|()| Outcome::Done)
+        end.and(written).map(|()| Outcome::Done)
     }
 
     /// Frames until the source ends or fails.
-    fn frames(&self, flight: &mut Flight, mut taken: Taken) -> Result<()> {
+    fn frames(&self, flight: &mut Flight, mut taken: Taken, mut video: Option<&mut Video<'_>>) -> Result<()> {
         loop {
             let dropped = flight.intake.dropped();
             flight.feed.push_until(&mut flight.pipeline, taken.time_s);
@@ -170,7 +208,8 @@ impl Run {
             };
             flight.summary.add(cue.invalid, cue.threat.is_some_and(|threat| threat.alarm));
             let read = self.say(taken.number, &cue, timing)?;
-            if !(read && flight.intake.next(&mut taken)?) {
+            let seen = video.as_mut().is_none_or(|video| video.add(&taken, &cue));
+            if !(read && seen && flight.intake.next(&mut taken)?) {
                 return Ok(());
             }
         }

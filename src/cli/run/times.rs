@@ -23,6 +23,15 @@ impl Rate {
     pub(super) fn of_fraction((frames, seconds): (u32, u32)) -> Self {
         Self { frames: f64::from(frames), seconds: f64::from(seconds) }
     }
+
+    /// As a video's header states it.
+    pub(super) fn fraction(self) -> (u32, u32) {
+        let whole = |value: f64| value.fract() == 0.0 && value <= f64::from(u32::MAX);
+        if whole(self.frames) && whole(self.seconds) {
+            return (self.frames as u32, self.seconds as u32);
+        }
+        ((1000.0 * self.frames / self.seconds).round().max(1.0) as u32, 1000)
+    }
 }
 
 /// Reads `25`, `29.97` and `30000/1001`.
@@ -72,6 +81,11 @@ impl Times {
         let per_second = (times.len() - 1) as f64 / span;
         let frames = if (0.001..=1e6).contains(&per_second) { per_second } else { Rate::DEFAULT.frames };
         Ok(Self { rate: Rate { frames, seconds: 1.0 }, listed: Some((path.to_owned(), times)), start_s })
+    }
+
+    /// The rate, or the mean one.
+    pub(super) fn rate(&self) -> Rate {
+        self.rate
     }
 
     /// The time of the frame of a number.
@@ -155,7 +169,9 @@ mod tests {
     fn a_rate_is_a_number_or_a_fraction() {
         for (text, fraction) in [("25", (25, 1)), ("30000/1001", (30000, 1001))] {
             assert_eq!(text.parse::<Rate>().unwrap(), Rate::of_fraction(fraction));
+            assert_eq!(Rate::of_fraction(fraction).fraction(), fraction);
         }
+        assert_eq!("29.97".parse::<Rate>().unwrap().fraction(), (29970, 1000));
         for text in ["0", "-1", "NaN", "inf", "x", "1/0", "2e6", ""] {
             assert!(text.parse::<Rate>().is_err(), "{text}");
         }

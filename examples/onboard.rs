@@ -1,0 +1,59 @@
+//! What a vehicle does with viewsphere: gyro samples and frames go in, and it acts on the cue. `onboard` needs no file: the
+//! frames are made up, of a flight at 5 m/s to a pillar 6 m ahead, with a gyro that is read at 200 Hz.
+
+use glam::{DMat3, DVec3};
+use viewsphere::camera::{Camera, Lens, Pose};
+use viewsphere::frame::Size;
+use viewsphere::imu::{GyroConfig, GyroSample};
+use viewsphere::sim::{RayTable, render, scenes};
+use viewsphere::{Backend, Cue, Pipeline, PipelineConfig};
+
+const SPEED_M_S: f64 = 5.0;
+const GYRO_RATE_HZ: f64 = 200.0;
+const FRAME_RATE_HZ: f64 = 30.0;
+
+fn main() -> viewsphere::Result<()> {
+    let size = Size::new(320, 240);
+    let camera = Camera { size, f_u: 160.0, f_v: 160.0, u_0: 159.5, v_0: 119.5, lens: Lens::NONE };
+    let config = PipelineConfig { gyro: Some(GyroConfig::default()), ..PipelineConfig::default() };
+    let mut pipeline = Pipeline::new(Backend::Cpu, &camera, &config)?;
+    let (world, rays) = (scenes::pillar(6.0, 0.5)?, RayTable::new(&camera)?);
+    let mut samples = (0..).map(|i| gyro(f64::from(i) / GYRO_RATE_HZ)).peekable();
+    for number in 0..30 {
+        let time_s = f64::from(number) / FRAME_RATE_HZ;
+        // Up to one sample after the frame, so that the turn until then is known.
+        while let Some(sample) = samples.next_if(|sample| sample.time_s < time_s + 1.0 / GYRO_RATE_HZ) {
+            pipeline.push_gyro(sample);
+        }
+        let view = render(&world, &rays, &pose(time_s));
+        act(&pipeline.process(&view.image.frame()?, time_s)?);
+    }
+    Ok(())
+}
+
+/// A cue that is invalid must not steer: what to do without one is the vehicle's own decision.
+fn act(cue: &Cue<'_>) {
+    let what = match (&cue.invalid, &cue.threat) {
+        (Some(reason), _) => format!("hold: {reason}"),
+        (None, Some(threat)) if threat.alarm => {
+            let side = if threat.azimuth_rad < 0.0 { "right" } else { "left" };
+            format!(
+                "turn {side}: {:.2} s to what is at {:+.1}°",
+                threat.time_s,
+                threat.azimuth_rad.to_degrees()
+            )
+        }
+        (None, _) => "go on".to_owned(),
+    };
+    println!("{:.3} s  {what}", cue.time_s);
+}
+
+/// The vehicle sways about its axis down while it goes straight on.
+fn gyro(time_s: f64) -> GyroSample {
+    GyroSample { time_s, gyro_rad_s: DVec3::Y * 0.6 * (8.0 * time_s).cos() }
+}
+
+fn pose(time_s: f64) -> Pose {
+    let world_from_camera = DMat3::from_rotation_y(0.6 / 8.0 * (8.0 * time_s).sin());
+    Pose { position_world: DVec3::Z * SPEED_M_S * time_s, world_from_camera }
+}

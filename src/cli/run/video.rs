@@ -1,0 +1,80 @@
+//! The overlay's video.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::intake::Taken;
+use crate::camera::Camera;
+use crate::cli::flow::targets::{Place, check_places, place};
+use crate::error::{Error, Result};
+use crate::frame::{PixelFormat, Y4mWriter, write_atomic};
+use crate::pipeline::Cue;
+use crate::report::Overlay;
+
+/// Where a video goes, checked before anything is computed.
+pub(super) fn target(path: &Path, lines: bool) -> Result<Place> {
+    let place = place(path, true, "y4m", &["y4m"])?;
+    match &place {
+        Place::Folder(folder, _) => {
+            return Err(Error::parameter("--overlay", folder.display(), "a .y4m file, not a folder"));
+        }
+        Place::Stdout if lines => {
+            return Err(Error::parameter("--overlay", "-", "--quiet beside it, as lines go there too"));
+        }
+        Place::Stdout | Place::File(_) => check_places([&place].into_iter())?,
+    }
+    Ok(place)
+}
+
+/// Gives `content` what it can write a video to. A file is whole or not there.
+pub(super) fn write(place: &Place, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    match place {
+        Place::File(path) => write_atomic(path, content),
+        Place::Stdout | Place::Folder(..) => content(&mut BufWriter::new(io::stdout().lock())),
+    }
+}
+
+/// A video that is being written.
+pub(super) struct Video<'a> {
+    overlay: Overlay,
+    writer: Y4mWriter<&'a mut dyn Write>,
+    failed: Option<Error>,
+}
+
+impl<'a> Video<'a> {
+    pub(super) fn new(
+        out: &'a mut dyn Write,
+        place: &Place,
+        [raw, ideal]: [&Camera; 2],
+        rate: (u32, u32),
+    ) -> Result<Self> {
+        let path = match place {
+            Place::File(path) => path.clone(),
+            Place::Stdout | Place::Folder(..) => PathBuf::from("standard output"),
+        };
+        let writer = Y4mWriter::new(out, path, ideal.size, PixelFormat::Rgb8, rate)?;
+        Ok(Self { overlay: Overlay::new(raw, ideal)?, writer, failed: None })
+    }
+
+    /// Adds a frame. Returns false if that failed, which [`Video::finish`] then tells.
+    pub(super) fn add(&mut self, taken: &Taken, cue: &Cue<'_>) -> bool {
+        let Self { overlay, writer, failed } = self;
+        let added =
+            taken.image.frame().and_then(|frame| writer.write_frame(&overlay.draw(&frame, cue)?.frame()?));
+        *failed = added.err();
+        failed.is_none()
+    }
+
+    /// Ends the video.
+    pub(super) fn finish(self) -> Result<()> {
+        let end = match self.failed {
+            Some(error) => Err(error),
+            None => self.writer.finish().map(|_| ()),
+        };
+        match end {
+            // Who looked on has had enough.
+            Err(Error::Io { source, .. }) if source.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            end => end,
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Results to look at.
+
+mod font;
+mod overlay;
+mod straight;
+
+pub use overlay::Overlay;

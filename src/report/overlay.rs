@@ -1,0 +1,289 @@
+//! A frame with what was made of it drawn over it.
+
+use glam::DVec3;
+
+use super::font::text;
+use super::straight::{Straight, pixels};
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::frame::{FlowField, Frame, Image, PixelFormat, colour_wheel, line};
+use crate::pipeline::Cue;
+use crate::sphere::{Grid, Threat, bearing};
+
+/// A displacement of this part of the picture's width has the wheel's full colour, so that colours can be compared from
+/// frame to frame.
+const FULL_COLOUR: f32 = 0.01;
+/// How much of the gray picture the fullest colour leaves.
+const OPAQUE: f32 = 0.6;
+/// Times to contact in seconds, each with the colour of what is met sooner.
+const TIMES: [(f64, [u8; 3]); 4] =
+    [(1.0, [255, 30, 30]), (2.0, [255, 140, 0]), (4.0, [255, 230, 0]), (8.0, [60, 220, 60])];
+const HEADING: [u8; 3] = [255; 3];
+const INVALID: [u8; 3] = [200, 0, 0];
+/// Of pixels that no sector has.
+const NO_SECTOR: u32 = u32::MAX;
+
+/// Draws cues over the pictures of the ideal camera, of which the flow is computed.
+///
+/// The picture is gray. Over it lie the flow as colours ([`colour_wheel`], from the frame before to this one; what does
+/// not move stays gray); a frame around each sector, red if it is met within 1 s, orange within 2 s, yellow within 4 s,
+/// green within 8 s; a box around the threat, with its time; the direction of motion as a cross; the frame's time at the
+/// lower left. A picture whose cue is invalid has a red border, and nothing else is drawn.
+#[derive(Debug)]
+pub struct Overlay {
+    ideal: Camera,
+    picture: Straight,
+    sectors: Sectors,
+    image: Image,
+}
+
+/// Which sector each pixel lies in.
+#[derive(Debug, Default)]
+struct Sectors {
+    grid: Option<Grid>,
+    of_pixel: Vec<u32>,
+}
+
+impl Overlay {
+    /// For frames of one camera whose flow is computed in the pictures of another one.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a camera that is out of range.
+    pub fn new(raw: &Camera, ideal: &Camera) -> Result<Self> {
+        raw.validate()?;
+        ideal.validate()?;
+        let data = vec![0; 3 * ideal.size.pixels()];
+        let image = Image { size: ideal.size, format: PixelFormat::Rgb8, data };
+        let picture = Straight::new(raw, ideal);
+        Ok(Self { ideal: *ideal, picture, sectors: Sectors::default(), image })
+    }
+
+    /// The frame with its cue over it, as [`PixelFormat::Rgb8`] in the ideal camera's size. The flow is drawn if the cue
+    /// has it ([`Config::read_flow`](crate::Config::read_flow)).
+    ///
+    /// # Errors
+    /// [`Error::SizeMismatch`] for a frame or a flow of another size.
+    pub fn draw(&mut self, frame: &Frame<'_>, cue: &Cue<'_>) -> Result<&Image> {
+        self.picture.draw(frame, &mut self.image)?;
+        let scale = (self.ideal.size.width as usize / 200).max(1);
+        if cue.invalid.is_some() {
+            self.border(2 * scale);
+        } else {
+            if let Some(flow) = cue.flow {
+                self.flow(flow)?;
+            }
+            self.outline(cue);
+            if let Some(threat) = &cue.threat {
+                self.threat(threat, &cue.sectors.grid, scale);
+            }
+            if cue.heading.is_known() {
+                self.cross(cue.heading.direction, 5.0 * scale as f64);
+            }
+        }
+        let bottom = f64::from(self.ideal.size.height);
+        text(&mut self.image, [0.0, bottom], &format!("{:.2}s", cue.time_s), [255; 3], scale);
+        Ok(&self.image)
+    }
+
+    fn flow(&mut self, flow: &FlowField) -> Result<()> {
+        if flow.size != self.ideal.size {
+            let what = "flow field".to_owned();
+            return Err(Error::SizeMismatch { what, found: flow.size, expected: self.ideal.size });
+        }
+        let scale = (FULL_COLOUR * self.ideal.size.width as f32).max(1.0);
+        // The cue's flow leads back to the frame before.
+        let forward =
+            FlowField { size: flow.size, data: flow.data.iter().map(|uv| uv.map(|c| -c)).collect() };
+        let (colours, _) = colour_wheel(&forward, Some(scale))?;
+        let colours = colours.data.as_chunks::<3>().0;
+        let pixels = self.image.data.as_chunks_mut::<3>().0.iter_mut();
+        for ((pixel, colour), uv) in pixels.zip(colours).zip(&flow.data) {
+            if FlowField::is_known(*uv) {
+                blend(pixel, *colour, OPAQUE * (uv[0].hypot(uv[1]) / scale).min(1.0));
+            }
+        }
+        Ok(())
+    }
+
+    /// Each sector's own frame, a pixel wide, in the colour of its time.
+    fn outline(&mut self, cue: &Cue<'_>) {
+        let grid = &cue.sectors.grid;
+        if self.sectors.grid != Some(*grid) {
+            self.sectors = Sectors { grid: Some(*grid), of_pixel: sector_of_pixels(&self.ideal, grid) };
+        }
+        let colours: Vec<(Option<[u8; 3]>, f32)> = (cue.sectors.sectors.iter())
+            .map(|sector| {
+                let time = cue.sectors.time_to_contact_s(sector)[1].unwrap_or(f64::INFINITY);
+                let found = TIMES.iter().find(|(limit, _)| time < *limit).map(|(_, colour)| *colour);
+                (found, if found.is_some() { 0.9 } else { 0.25 })
+            })
+            .collect();
+        let (width, of) = (self.ideal.size.width as usize, &self.sectors.of_pixel);
+        for (i, pixel) in self.image.data.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            let Some((colour, share)) = colours.get(of[i] as usize) else { continue };
+            let x = i % width;
+            let beside = [
+                (x > 0).then(|| i - 1),
+                (x + 1 < width).then_some(i + 1),
+                i.checked_sub(width),
+                (i + width < of.len()).then_some(i + width),
+            ];
+            if beside.into_iter().any(|at| at.is_none_or(|at| of[at] != of[i])) {
+                blend(pixel, colour.unwrap_or([0; 3]), *share);
+            }
+        }
+    }
+
+    /// A box about as large as the threat, with its time above it.
+    fn threat(&mut self, threat: &Threat, grid: &Grid, scale: usize) {
+        let colour = if threat.alarm { TIMES[0].1 } else { TIMES[1].1 };
+        let half = grid.pitch_rad().map(|pitch| 0.5 * pitch * (threat.sectors as f64).sqrt());
+        let corner = |right: f64, up: f64| {
+            let angles = [threat.azimuth_rad + right * half[0], threat.elevation_rad + up * half[1]];
+            self.ideal.project(bearing(angles))
+        };
+        let corners = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
+        let [Some(a), Some(b), Some(c), Some(d)] = corners else { return };
+        for [from, to] in [[a, b], [b, c], [c, d], [d, a]] {
+            for shift in 0..=scale {
+                let moved = |place: [f64; 2]| place.map(|c| c + shift as f64);
+                line(&mut self.image, moved(from), moved(to), colour);
+            }
+        }
+        let above = [a[0], a[1] - 8.0 * scale as f64];
+        text(&mut self.image, above, &format!("{:.1}s", threat.time_s), colour, scale);
+    }
+
+    fn cross(&mut self, direction: DVec3, arm: f64) {
+        let Some([u, v]) = self.ideal.project(direction) else { return };
+        for shift in [0.0, 1.0] {
+            line(&mut self.image, [u - arm, v + shift], [u + arm, v + shift], HEADING);
+            line(&mut self.image, [u + shift, v - arm], [u + shift, v + arm], HEADING);
+        }
+    }
+
+    fn border(&mut self, thick: usize) {
+        let (width, height) = (self.ideal.size.width as usize, self.ideal.size.height as usize);
+        for (i, pixel) in self.image.data.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            let (x, y) = (i % width, i / width);
+            if x.min(width - 1 - x).min(y).min(height - 1 - y) < thick {
+                *pixel = INVALID;
+            }
+        }
+    }
+}
+
+fn sector_of_pixels(ideal: &Camera, grid: &Grid) -> Vec<u32> {
+    let sector = |pixel| {
+        let [column, row] = grid.sector(ideal.ray(pixel)?)?;
+        Some((row * grid.columns + column) as u32)
+    };
+    pixels(ideal).map(|pixel| sector(pixel).unwrap_or(NO_SECTOR)).collect()
+}
+
+fn blend(pixel: &mut [u8; 3], colour: [u8; 3], share: f32) {
+    for (below, above) in pixel.iter_mut().zip(colour) {
+        *below = ((1.0 - share) * f32::from(*below) + share * f32::from(above)).round() as u8;
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::camera::Lens;
+    use crate::frame::{Size, UNKNOWN_FLOW};
+    use crate::pipeline::Invalid;
+    use crate::sphere::{Heading, Sectors};
+
+    const SIZE: Size = Size::new(200, 150);
+    const GRAY: [u8; 3] = [90; 3];
+
+    fn camera() -> Camera {
+        Camera { size: SIZE, f_u: 100.0, f_v: 100.0, u_0: 99.5, v_0: 74.5, lens: Lens::NONE }
+    }
+
+    fn cue<'a>(sectors: &'a Sectors, flow: &'a FlowField) -> Cue<'a> {
+        Cue {
+            frame: 1,
+            time_s: 0.5,
+            interval_s: Some(0.1),
+            invalid: None,
+            prev_from_cur: None,
+            heading: Heading::UNKNOWN,
+            sectors,
+            threat: None,
+            flow: Some(flow),
+            fields: &[],
+            latency: Duration::ZERO,
+        }
+    }
+
+    fn drawn(change: impl FnOnce(&mut Cue<'_>), uv: [f32; 2]) -> Vec<[u8; 3]> {
+        let camera = camera();
+        let mut sectors = Sectors::unknown(Grid::over(&camera, [4, 3]).unwrap());
+        sectors.interval_s = 0.1;
+        (sectors.sectors[0].coverage, sectors.sectors[0].nearness_rate_hz) = (1.0, [2.0; 3]);
+        let flow = FlowField { size: SIZE, data: vec![uv; SIZE.pixels()] };
+        let mut cue = cue(&sectors, &flow);
+        change(&mut cue);
+        let gray = vec![90; SIZE.pixels()];
+        let frame = Frame::new(SIZE, PixelFormat::Gray8, &gray).unwrap();
+        let mut overlay = Overlay::new(&camera, &camera).unwrap();
+        overlay.draw(&frame, &cue).unwrap().data.as_chunks::<3>().0.to_vec()
+    }
+
+    fn at(image: &[[u8; 3]], x: usize, y: usize) -> [u8; 3] {
+        image[y * SIZE.width as usize + x]
+    }
+
+    #[test]
+    fn a_sector_that_is_met_soon_is_framed_in_red_and_others_are_dark() {
+        let image = drawn(|_| {}, [UNKNOWN_FLOW; 2]);
+        let grid = Grid::over(&camera(), [4, 3]).unwrap();
+        let right = grid.azimuth_rad[0] + grid.pitch_rad()[0];
+        let right = (100.0 * right.tan() + 99.5).floor() as usize;
+        assert!(
+            at(&image, right, 20)[0] > 200 && at(&image, right, 20)[1] < 60,
+            "{:?}",
+            at(&image, right, 20)
+        );
+        let beside = at(&image, right + 1, 20);
+        assert!(beside[0] < 90 && beside[0] == beside[1], "{beside:?}");
+        // Nothing moves and nothing is near in the middle of a sector.
+        assert_eq!((at(&image, right / 2, 15), at(&image, 90, 60)), (GRAY, GRAY));
+    }
+
+    #[test]
+    fn the_flow_is_shown_from_the_frame_before() {
+        // Back to the left: it moved to the right, which is red.
+        let image = drawn(|_| {}, [-2.0, 0.0]);
+        let [r, g, b] = at(&image, 90, 60);
+        assert!(r > 150 && g < 80 && b < 90, "{r} {g} {b}");
+        assert_eq!(at(&drawn(|_| {}, [0.0; 2]), 90, 60), GRAY);
+    }
+
+    #[test]
+    fn a_threat_is_boxed_and_the_heading_crossed() {
+        let threat = Threat { azimuth_rad: 0.0, elevation_rad: 0.0, time_s: 1.3, sectors: 1, alarm: true };
+        let heading = Heading { direction: DVec3::new(0.2, 0.1, 1.0).normalize(), error_rad: 0.1 };
+        let image = drawn(|cue| (cue.threat, cue.heading) = (Some(threat), heading), [UNKNOWN_FLOW; 2]);
+        // The direction's pixel is 99.5 + 20, 74.5 + 10.
+        assert_eq!(at(&image, 120, 85), HEADING);
+        let box_left = 99.5 - 100.0 * (0.5 * camera_pitch()).tan();
+        let left = at(&image, box_left.round() as usize, 75);
+        assert_eq!(left, TIMES[0].1, "{box_left}");
+    }
+
+    fn camera_pitch() -> f64 {
+        Grid::over(&camera(), [4, 3]).unwrap().pitch_rad()[0]
+    }
+
+    #[test]
+    fn an_invalid_cue_has_a_border_and_nothing_else() {
+        let image = drawn(|cue| cue.invalid = Some(Invalid::First), [-2.0, 0.0]);
+        assert_eq!((at(&image, 0, 0), at(&image, 199, 70), at(&image, 90, 60)), (INVALID, INVALID, GRAY));
+    }
+}
