@@ -4,23 +4,15 @@
 //! needs them is not tested, and the test says so.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
+mod common;
+
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, Lens, world_from_body};
 use viewsphere::frame::{PixelFormat, Size, picture};
 use viewsphere::kernels::{lens_map, remap};
-
-fn folder() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("VIEWSPHERE_DATA").map_or_else(beside, PathBuf::from);
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is not there", folder.display());
-        return None;
-    }
-    Some(folder)
-}
 
 /// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the picture,
 /// which is why no file with it would be accepted; up to there its values can be compared.
@@ -60,7 +52,7 @@ fn rows(path: &Path) -> Vec<Vec<f64>> {
 
 #[test]
 fn rays_are_those_of_opencv() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = common::data("") else { return };
     let (camera, limit) = (gopro(), gopro().lens.radius_limit());
     let (mut worst, mut seen, mut hidden) = (0.0_f64, 0, 0);
     for row in rows(&folder.join("golden_cv2/gopro_undistort_points.csv")) {
@@ -87,7 +79,7 @@ fn rays_are_those_of_opencv() {
 
 #[test]
 fn the_map_is_that_of_opencv() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = common::data("") else { return };
     let (raw, out) = (gopro(), cropped());
     let mut worst = 0.0_f64;
     let (mut seen, mut count) = (0, 0);
@@ -126,7 +118,7 @@ fn mapped(raw: &Camera, out: &Camera, raw_from_out: &DMat3) -> (Vec<f32>, Vec<f3
 
 #[test]
 fn the_undistorted_picture_is_that_of_opencv() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = common::data("") else { return };
     let (raw, out) = (gopro(), cropped());
     let expected = picture::read(folder.join("golden_cv2/gopro_test_image_undistorted_gray.png")).unwrap();
     let source = picture::read(folder.join("udacity_gopro_wide/test_image.jpg")).unwrap();
@@ -159,7 +151,7 @@ fn the_undistorted_picture_is_that_of_opencv() {
 
 #[test]
 fn files_that_tools_have_written_are_read() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = common::data("") else { return };
     let camera = viewsphere::camera::read(folder.join("opencv_chessboard/left_intrinsics.yml")).unwrap();
     assert_eq!((camera.size, camera.f_u), (Size::new(640, 480), 535.915733961632));
     assert_eq!(camera.lens.coefficients[4], 0.23839153080878486);

@@ -7,7 +7,7 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use common::pair::{On, flow};
 use viewsphere::eval::flow_error;
@@ -88,16 +88,6 @@ fn settings() -> [(&'static str, Farneback); 3] {
     [("light", light), ("heavy", heavy), ("heavy-gauss", gauss)]
 }
 
-fn folder() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("VIEWSPHERE_DATA").map_or_else(beside, PathBuf::from);
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is not there", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
 /// A picture in gray as the figures were computed from: OpenCV's PNG reader truncates its weights of red, green and
 /// blue, where this crate's own conversion rounds.
 fn gray(path: &Path) -> Image {
@@ -122,7 +112,7 @@ fn mask(path: &Path) -> Plane {
 }
 
 fn check(on: On<'_>, chosen: &[&str]) {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = common::data("") else { return };
     let mut problems = Vec::new();
     for pair in &PAIRS {
         let images = pair.images.map(|file| gray(&folder.join(file)));

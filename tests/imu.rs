@@ -1,7 +1,9 @@
 //! The rotation between two exposures from a gyro's samples: against closed forms, recorded flights, and bad samples.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
@@ -242,17 +244,6 @@ fn logs_that_are_not_logs_are_errors_that_name_the_line() {
     assert!(matches!(read_log("/nonexistent/gyro.csv"), Err(Error::Io { .. })));
 }
 
-/// The folder of a recorded flight; see `data.rs`.
-fn euroc() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("VIEWSPHERE_DATA").map_or_else(beside, PathBuf::from).join("euroc_v101");
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is not there", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
 /// Numbers of a line, the first of which are nanoseconds.
 fn numbers(line: &str) -> Vec<f64> {
     line.split(',').map(|field| field.trim().parse().unwrap()).collect()
@@ -260,7 +251,7 @@ fn numbers(line: &str) -> Vec<f64> {
 
 #[test]
 fn a_recorded_flight_agrees_with_motion_capture() {
-    let Some(folder) = euroc() else { return };
+    let Some(folder) = common::data("euroc_v101") else { return };
     let camera = std::fs::read_to_string(folder.join("cam0_sensor.yaml")).unwrap();
     let extrinsics = camera.split_once("data: [").unwrap().1.split_once(']').unwrap().0;
     let t: Vec<f64> = extrinsics.split(',').map(|e| e.trim().parse().unwrap()).collect();
