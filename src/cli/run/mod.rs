@@ -48,7 +48,8 @@ use crate::sphere::{Alarm, Sphere};
 #[command(after_help = "\
 Examples:
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv
-  viewsphere run 'cam0/data/*.png' --camera cam0.yaml --times cam0/data.csv --gyro imu0/data.csv --camera-from-gyro frd
+  viewsphere run 'cam0/data/*.png' --camera cam0.yaml \\
+    --times cam0/data.csv --gyro imu0/data.csv --camera-from-gyro 0,1,0,-1,0,0,0,0,1
   viewsphere run flight.y4m --fov-deg 90 --json-lines | jq -c 'select(.threat.alarm) | [.time_s, .threat]'
   viewsphere run flight.y4m --fov-deg 90 --quiet --overlay out.y4m
   viewsphere run flight.y4m --fov-deg 90 --realtime --quiet --overlay - | ffplay -
