@@ -214,6 +214,35 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
 }
 
 #[test]
+fn cells_may_be_single_pixels() {
+    let camera = camera().resized(Size::new(161, 121));
+    let rates = |cell: u32, window: u32, backend: Backend| {
+        let sphere = Sphere { cell, step: 1, window, sectors: [6, 5], ..Sphere::default() };
+        let (invalid, sectors, _) = run(backend, &camera, &PipelineConfig { sphere, ..with_gyro() })
+            .pop()
+            .unwrap_or_else(|| panic!("no cue"));
+        assert_eq!(invalid, None);
+        let known = |sector: &viewsphere::sphere::Sector| sector.coverage > 0.2;
+        let rates: Vec<Option<f64>> = (sectors.sectors.iter())
+            .map(|sector| known(sector).then_some(sector.nearness_rate_hz[1]))
+            .collect();
+        rates
+    };
+    let wide = rates(8, 1, Backend::Cpu);
+    for backend in [Some(Backend::Cpu), common::gpu().map(Backend::Gpu)].into_iter().flatten() {
+        let fine = rates(1, 8, backend);
+        let mut ratios: Vec<f64> = wide
+            .iter()
+            .zip(&fine)
+            .filter_map(|(wide, fine)| Some((fine.as_ref()? / wide.as_ref()? - 1.0).abs()))
+            .collect();
+        assert!(ratios.len() >= 6, "{} sectors compared", ratios.len());
+        let median = common::flight::quantile(&mut ratios, 0.5);
+        assert!(median < 0.1, "{median}");
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     let camera = small();
     let new = |camera: &Camera, config: PipelineConfig| Pipeline::new(Backend::Cpu, camera, &config).err();

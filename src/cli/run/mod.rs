@@ -85,7 +85,8 @@ pub(super) struct Run {
     /// is a threat too [default: 0.4]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     aside_s: Option<f64>,
-    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1
+    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1.
+    /// About doubles the time: what it hides is left out of the flow too
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Print a JSON object a frame
@@ -166,6 +167,8 @@ impl Run {
         };
         config.engine.format = format;
         config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
+        // What the mask hides must not be seen in the flow beside it.
+        config.engine.flow.certainty = config.mask.is_some();
         let pipeline = Pipeline::new(self.backend.open()?, &camera, &config)?;
         // What it took to get ready is not the frame's age.
         first.there = Instant::now();
