@@ -4,8 +4,10 @@
 //! All is in the camera's frame at the later of two exposures: x to the right, y down, z forward.
 
 mod alarm;
+mod back;
 mod config;
 mod eigen;
+mod front;
 mod grid;
 mod heading;
 pub mod model;

@@ -1,0 +1,140 @@
+//! From the flow to the sectors of the view.
+
+use super::config::Sphere;
+use super::grid::{Cells, Grid};
+use super::plan::Fields;
+use crate::camera::Camera;
+use crate::frame::Size;
+use crate::kernels::{cells, looming, sectors, tangent, trust};
+use crate::plan::{BufId, Bufs, Shape, Step};
+
+/// From the flow to the sectors.
+pub(super) struct Back<'a> {
+    ideal: &'a Camera,
+    view: &'a Sphere,
+    cells_at: &'a Cells,
+    grid: [u32; 2],
+    trust: BufId,
+    cells: (BufId, Shape),
+    looming: (BufId, Shape),
+    sectors: (BufId, Shape),
+    tangent: Option<(BufId, Shape)>,
+    ranges: BufId,
+    members: BufId,
+    wanted: Fields,
+}
+
+impl<'a> Back<'a> {
+    pub(super) fn new(
+        bufs: &mut Bufs,
+        view: &'a Sphere,
+        ideal: &'a Camera,
+        cells: &'a Cells,
+        grid: &Grid,
+        wanted: Fields,
+    ) -> Self {
+        let columns_rows = Size::new(grid.columns as u32, grid.rows as u32);
+        let mut computed = |name: &str, shape: Shape| (bufs.computed(name, shape), shape);
+        let (trust, _) = computed("trust", Shape::planar(cells.size, 1));
+        let of_cells = computed("cells", Shape::planar(cells.size, 5));
+        let looming = computed("looming", Shape::planar(cells.size, 4));
+        let sectors = computed("sectors", Shape::planar(columns_rows, sectors::CHANNELS));
+        let tangent = wanted.tangent.then(|| computed("tangent flow", Shape::planar(ideal.size, 3)));
+        let [ranges, members] = grid.members(cells);
+        Self {
+            ideal,
+            view,
+            cells_at: cells,
+            grid: view.sectors,
+            trust,
+            cells: of_cells,
+            looming,
+            sectors,
+            tangent,
+            ranges: bufs.constant("ranges of members", ranges),
+            members: bufs.constant("members of sectors", members),
+            wanted,
+        }
+    }
+
+    pub(super) fn fields(&self) -> Vec<(BufId, Shape)> {
+        let when = |wanted: bool, field| wanted.then_some(field);
+        let beside =
+            [when(self.wanted.looming, self.looming), when(self.wanted.cells, self.cells), self.tangent];
+        std::iter::once(self.sectors).chain(beside.into_iter().flatten()).collect()
+    }
+
+    /// `turn` is what the flow still holds of the camera's turn, `motion` what is known of the heading.
+    pub(super) fn steps(
+        &self,
+        steps: &mut Vec<Step>,
+        expansions: [BufId; 4],
+        certainty: [BufId; 2],
+        flow: BufId,
+        [turn, motion]: [BufId; 2],
+    ) {
+        let Size { width, height } = self.ideal.size;
+        let Size { width: columns, height: rows } = self.cells_at.size;
+        let Sphere { cell, step, window, .. } = *self.view;
+        if let Some(tangent) = self.tangent {
+            steps.push(Step::new(&tangent::KERNEL, "sphere", pinhole(self.ideal), &[flow, turn], &[tangent]));
+        }
+        let [quad_0, cross_0, quad_1, cross_1] = expansions;
+        steps.push(Step::new(
+            &trust::KERNEL,
+            "sphere",
+            trust::Params { columns, rows, width, height, cell, step },
+            &[quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow],
+            &[(self.trust, Shape::planar(self.cells_at.size, 1))],
+        ));
+        let tangent::Params { focal, centre, .. } = pinhole(self.ideal);
+        steps.push(Step::new(
+            &cells::KERNEL,
+            "sphere",
+            cells::Params { columns, rows, width, height, cell, step, focal, centre },
+            &[flow, turn, certainty[0], self.trust],
+            &[self.cells],
+        ));
+        let [origin, pitch] = self.cells_at.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
+        steps.push(Step::new(
+            &looming::KERNEL,
+            "sphere",
+            looming::Params {
+                columns,
+                rows,
+                radius: window,
+                inner: window / 2,
+                pitch,
+                origin,
+                noise: (self.view.noise_px / self.ideal.f_u) as f32,
+                least_trust: self.view.least_trust as f32,
+            },
+            &[self.cells.0, motion],
+            &[self.looming],
+        ));
+        steps.push(Step::new(
+            &sectors::KERNEL,
+            "sphere",
+            sectors::Params {
+                columns: self.grid[0],
+                rows: self.grid[1],
+                cell_columns: columns,
+                // A window is whole where all its cells are trusted; at half of that it still counts.
+                least_trust: 0.5 * self.view.least_trust as f32,
+                quantile: self.view.quantile as f32,
+            },
+            &[self.cells.0, self.looming.0, self.ranges, self.members],
+            &[self.sectors],
+        ));
+    }
+}
+
+/// An ideal camera as the kernels take it.
+pub(super) fn pinhole(camera: &Camera) -> tangent::Params {
+    tangent::Params {
+        width: camera.size.width,
+        height: camera.size.height,
+        focal: [camera.f_u as f32, camera.f_v as f32],
+        centre: [camera.u_0 as f32, camera.v_0 as f32],
+    }
+}
