@@ -147,6 +147,9 @@ fn the_undistorted_picture_is_that_of_opencv() {
         found.len(),
         &histogram[..8]
     );
+    // OpenCV reads at places rounded to 1/32 px: here and there a gray level is one further off.
+    assert!(count > 1_000_000 && histogram[0] * 100 > 97 * count, "{:?}", &histogram[..8]);
+    assert!(histogram[2] * 1000 <= count && histogram[3..].iter().all(|n| *n == 0), "{:?}", &histogram[..8]);
 }
 
 #[test]

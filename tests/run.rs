@@ -256,6 +256,17 @@ fn a_camera_file_and_a_mask_are_used_and_must_fit() {
 }
 
 #[test]
+fn no_input_is_overwritten() {
+    let folder = flight();
+    let before = fs::read(folder.path().join("a.y4m")).unwrap();
+    for overlay in ["a.y4m", "./a.y4m"] {
+        let args = ["a.y4m", "--fov-deg", "90", "--quiet", "--overlay", overlay];
+        refused(&folder, &args, &["--overlay is", "a.y4m, expected another place"]);
+    }
+    assert_eq!(fs::read(folder.path().join("a.y4m")).unwrap(), before);
+}
+
+#[test]
 fn a_video_that_is_cut_off_is_processed_to_its_last_whole_frame() {
     let folder = flight();
     let bytes = fs::read(folder.path().join("a.y4m")).unwrap();

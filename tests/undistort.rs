@@ -212,6 +212,22 @@ fn each_format_of_the_new_camera_says_the_same() {
 }
 
 #[test]
+fn no_input_is_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    camera::write(path("cam.yaml"), &barrel(), Format::OpenCv).unwrap();
+    let image = Image { size: SIZE, format: PixelFormat::Gray8, data: vec![90; SIZE.pixels()] };
+    picture::write_png(path("000000.png"), &image).unwrap();
+    let before = [fs::read(path("cam.yaml")).unwrap(), fs::read(path("000000.png")).unwrap()];
+    let expected = "expected another place than that of the input";
+    refused(&folder, &["--camera", "cam.yaml", "000000.png", "-o", "./000000.png"], &["-o is", expected]);
+    refused(&folder, &["--camera", "cam.yaml", "*.png", "-o", "."], &["-o is .,", expected]);
+    let camera = ["--camera", "cam.yaml", "000000.png", "--write-camera", "cam.yaml"];
+    refused(&folder, &camera, &["--write-camera is cam.yaml", expected]);
+    assert_eq!(before, [fs::read(path("cam.yaml")).unwrap(), fs::read(path("000000.png")).unwrap()]);
+}
+
+#[test]
 fn bad_input_is_named() {
     let folder = files();
     for (args, words) in [

@@ -21,6 +21,29 @@ pub(super) fn folder(path: &Path) -> Result<()> {
     check_writable(there)
 }
 
+/// Checks that no input is overwritten: that a result is neither one of these files, nor goes among them where it is a
+/// folder. What is not there yet, and `-`, is no input.
+pub(super) fn spared<'a>(
+    flag: &'static str,
+    result: Option<&Path>,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    let found = result.and_then(|path| Some((path, path.canonicalize().ok()?)));
+    let Some((given, result)) = found else { return Ok(()) };
+    for input in inputs {
+        let folder =
+            input.parent().map(|parent| if parent == Path::new("") { Path::new(".") } else { parent });
+        let beside = folder.filter(|_| result.is_dir()).and_then(|folder| folder.canonicalize().ok());
+        if input.canonicalize().is_ok_and(|input| input == result)
+            || beside.is_some_and(|beside| beside == result)
+        {
+            let expected = format!("another place than that of the input {}", input.display());
+            return Err(Error::parameter(flag, given.display(), expected));
+        }
+    }
+    Ok(())
+}
+
 /// Two pictures of one size and pixel format.
 pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
     let first = picture::read(a)?;

@@ -13,7 +13,7 @@ pub struct PipelineConfig {
     /// The estimator, the frames' format, and how the stream is run. Frames are dropped before they are submitted, if at
     /// all: [`Config::drop_oldest`] and [`Config::warm_start`] must be off. With
     /// [`Farneback::certainty`](crate::flow::Farneback::certainty) what the frame does not show, and what the mask
-    /// hides, is left out of the expansions too, at about half as much again of the time.
+    /// hides, is left out of the expansions too, at about twice the time.
     pub engine: Config,
     /// How the flow on the view sphere is summed up.
     pub sphere: Sphere,

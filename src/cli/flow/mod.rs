@@ -102,6 +102,17 @@ impl Flow {
         let mut source = Source::open(&self.inputs, self.raw)?;
         let single = self.inputs.len() == 2 && source.len() == Some(2);
         self.check(single)?;
+        for (flag, result) in [
+            ("-o", &self.output),
+            ("--color", &self.color),
+            ("--arrows", &self.arrows),
+            ("--confidence", &self.confidence),
+        ] {
+            let given = [&self.init, &self.mask].into_iter().flatten().map(PathBuf::as_path);
+            // A folder may well be the one of two pictures: what goes there is named otherwise.
+            let pictures = self.inputs.iter().map(Path::new);
+            input::spared(flag, result.as_deref().filter(|path| !path.is_dir()), pictures.chain(given))?;
+        }
         let targets = Targets::new(self, single)?;
         let images = source.first_two()?;
         let (size, first) = (images[0].size, &self.inputs[0]);

@@ -18,7 +18,7 @@ use crate::sphere::Derotation;
 pub(super) struct GyroArgs {
     /// Log of a gyro, so that the camera's turn is taken out of the flow: time_s,gyro_x_rad_s,… or EuRoC's
     #[arg(long, value_name = "FILE")]
-    gyro: Option<PathBuf>,
+    pub(super) gyro: Option<PathBuf>,
     /// What the gyro says at rest, in its own frame, in rad/s
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "gyro")]
     gyro_bias: Option<Numbers<3>>,

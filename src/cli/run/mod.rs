@@ -7,7 +7,7 @@ mod summary;
 mod times;
 mod video;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -128,6 +128,9 @@ impl Run {
         if !self.start_s.is_finite() {
             return Err(Error::parameter("--start-s", self.start_s, "a finite time"));
         }
+        let files = [&self.camera, &self.gyro.gyro, &self.times, &self.mask].into_iter().flatten();
+        let read = self.inputs.iter().map(Path::new).chain(files.map(PathBuf::as_path));
+        input::spared("--overlay", self.overlay.as_deref().filter(|path| !path.is_dir()), read)?;
         let lines = self.json || !self.quiet;
         let target = self.overlay.as_ref().map(|path| video::target(path, lines)).transpose()?;
         let PipelineConfig { engine, alarm, .. } = PipelineConfig::default();

@@ -2,7 +2,7 @@
 
 mod resample;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -92,6 +92,12 @@ impl Undistort {
         let raw = camera::read(&self.camera)?;
         let out = self.ideal(&raw)?;
         let mut source = Source::open(&self.inputs, self.raw)?;
+        for (flag, result) in
+            [("-o", &self.output), ("--field", &self.field), ("--write-camera", &self.write_camera)]
+        {
+            let read = self.inputs.iter().map(Path::new).chain([self.camera.as_path()]);
+            input::spared(flag, result.as_deref(), read)?;
+        }
         let places = self.places(source.len() == Some(1))?;
         let mut image = Image::default();
         if !source.next(&mut image)? {
