@@ -40,7 +40,14 @@ impl World {
         if !point_world.is_finite() {
             return f64::NAN;
         }
-        self.surfaces.iter().map(|surface| surface.distance_m(point_world)).fold(f64::INFINITY, f64::min)
+        let mut nearest_m = f64::INFINITY;
+        for surface in &self.surfaces {
+            // Most are too far away to be looked at closely.
+            if point_world.distance(surface.origin_world) - surface.reach_m < nearest_m {
+                nearest_m = nearest_m.min(surface.distance_m(point_world));
+            }
+        }
+        nearest_m
     }
 }
 

@@ -10,21 +10,48 @@ pub struct Surface {
     pub(super) origin_world: DVec3,
     pub(super) local_from_world: DMat3,
     pub(super) shape: Shape,
+    /// Nothing of it is farther from its origin.
+    pub(super) reach_m: f64,
     form: Form,
 }
 
-/// What a [`Surface`] was made of: the arguments of the function that made it.
+/// What a [`Surface`] was made of: the arguments of the function that made it, as they were given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)] // Each says what its fields are by the function of its name.
 pub enum Form {
-    /// [`Surface::plane`].
-    Plane { point_world: DVec3, normal_world: DVec3 },
-    /// [`Surface::rectangle`].
-    Rectangle { centre_world: DVec3, to_right: DVec3, to_top: DVec3 },
-    /// [`Surface::cylinder`].
-    Cylinder { base_world: DVec3, top_world: DVec3, radius_m: f64 },
-    /// [`Surface::cuboid`].
-    Cuboid { centre_world: DVec3, world_from_box: DMat3, edges_m: DVec3 },
+    /// Of [`Surface::plane`].
+    Plane {
+        /// Any point of it, metres.
+        point_world: DVec3,
+        /// Of any length.
+        normal_world: DVec3,
+    },
+    /// Of [`Surface::rectangle`].
+    Rectangle {
+        /// Metres.
+        centre_world: DVec3,
+        /// From the centre to the middle of an edge, metres.
+        to_right: DVec3,
+        /// The same, at a right angle.
+        to_top: DVec3,
+    },
+    /// Of [`Surface::cylinder`].
+    Cylinder {
+        /// Centre of one lid, metres.
+        base_world: DVec3,
+        /// Centre of the other.
+        top_world: DVec3,
+        /// Metres.
+        radius_m: f64,
+    },
+    /// Of [`Surface::cuboid`].
+    Cuboid {
+        /// Metres.
+        centre_world: DVec3,
+        /// The directions of its edges are the columns.
+        world_from_box: DMat3,
+        /// Whole lengths, metres.
+        edges_m: DVec3,
+    },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +151,13 @@ impl Surface {
         if !origin_world.is_finite() {
             return Err(Error::parameter("place of a surface", origin_world, "three finite coordinates"));
         }
-        Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape, form })
+        let reach_m = match shape {
+            Shape::Plane => f64::INFINITY,
+            Shape::Rectangle { half_m: [a, b] } => a.hypot(b),
+            Shape::Cylinder { radius_m, length_m } => radius_m.hypot(length_m),
+            Shape::Cuboid { half_m } => half_m.length(),
+        };
+        Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape, reach_m, form })
     }
 
     /// The length after which the texture repeats along u, if u runs around something.

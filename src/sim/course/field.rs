@@ -28,22 +28,27 @@ impl<'a> Field<'a> {
 
     /// Whether the values are within their limits and in order.
     pub(super) fn check(&self) -> Result<()> {
-        let [low, high] = self.limits;
-        let sound = self.values.iter().all(|value| (low..=high).contains(value)) && self.values.is_sorted();
-        if sound { Ok(()) } else { Err(self.wrong(self)) }
+        if self.are_sound(self.values) { Ok(()) } else { Err(self.wrong(self)) }
     }
 
     /// Reads a value, such as `0.02` or `1/64`, or a range, such as `-20..20`.
     pub(super) fn read(&mut self, text: &str) -> Result<()> {
-        let wrong = || self.wrong(text);
-        if self.values.len() == 1 {
-            self.values[0] = number(text).ok_or_else(wrong)?;
-        } else {
-            let (from, to) = text.split_once("..").unwrap_or((text, text));
-            let ends = [number(from).ok_or_else(wrong)?, number(to).ok_or_else(wrong)?];
-            self.values.copy_from_slice(&ends);
+        let ends = if self.values.len() == 1 { None } else { text.split_once("..") };
+        let (from, to) = ends.unwrap_or((text, text));
+        match [number(from), number(to)] {
+            [Some(from), Some(to)] if self.are_sound(&[from, to]) => {
+                for (value, end) in self.values.iter_mut().zip([from, to]) {
+                    *value = end;
+                }
+                Ok(())
+            }
+            _ => Err(self.wrong(format_args!("{text:?}"))),
         }
-        self.check()
+    }
+
+    fn are_sound(&self, values: &[f64]) -> bool {
+        let [low, high] = self.limits;
+        values.iter().all(|value| (low..=high).contains(value)) && values.is_sorted()
     }
 
     pub(super) fn is_as(&self, other: &Field<'_>) -> bool {

@@ -2,7 +2,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::field::Field;
-use super::{City, Corridor, Course, DeadEnd, Forest, PoissonForest, Wall};
+use super::{City, Corridor, Course, DeadEnd, Forest, PoissonForest, Wall, Wires};
 use crate::error::{Error, Result};
 
 /// A generator of courses with its parameters.
@@ -26,11 +26,13 @@ pub enum CourseKind {
     PoissonForest(PoissonForest),
     /// `dead-end`.
     DeadEnd(DeadEnd),
+    /// `wires`.
+    Wires(Wires),
 }
 
 impl CourseKind {
     /// All kinds with their defaults.
-    pub fn all() -> [Self; 7] {
+    pub fn all() -> [Self; 8] {
         [
             Self::Wall(Wall::default()),
             Self::Corridor(Corridor::default()),
@@ -39,6 +41,7 @@ impl CourseKind {
             Self::Pillars(Forest::PILLARS),
             Self::PoissonForest(PoissonForest::default()),
             Self::DeadEnd(DeadEnd::default()),
+            Self::Wires(Wires::default()),
         ]
     }
 
@@ -52,6 +55,7 @@ impl CourseKind {
             Self::Pillars(_) => "pillars",
             Self::PoissonForest(_) => "poisson-forest",
             Self::DeadEnd(_) => "dead-end",
+            Self::Wires(_) => "wires",
         }
     }
 
@@ -67,6 +71,7 @@ impl CourseKind {
             Self::Forest(forest) | Self::Pillars(forest) => forest.course(seed),
             Self::PoissonForest(forest) => forest.course(seed),
             Self::DeadEnd(dead_end) => dead_end.course(seed),
+            Self::Wires(wires) => wires.course(seed),
         }?;
         Ok(Course { name: self.to_string(), ..course })
     }
@@ -79,6 +84,7 @@ impl CourseKind {
             Self::Forest(forest) | Self::Pillars(forest) => forest.fields(),
             Self::PoissonForest(forest) => forest.fields(),
             Self::DeadEnd(dead_end) => dead_end.fields(),
+            Self::Wires(wires) => wires.fields(),
         }
     }
 
@@ -129,5 +135,112 @@ impl FromStr for CourseKind {
         }
         drop(fields);
         Ok(kind)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn defaults_are_named_by_their_name_alone() {
+        for kind in CourseKind::all() {
+            assert_eq!(kind.to_string(), kind.name());
+            assert_eq!(kind.name().parse::<CourseKind>().unwrap(), kind);
+            assert_eq!(kind.course(3).unwrap().name, kind.name());
+        }
+    }
+
+    #[test]
+    fn parameters_are_read_and_only_those_that_differ_are_shown() {
+        let cases = [
+            ("forest:density=1/64", "forest:density=0.015625"),
+            ("forest:density=0.01", "forest"),
+            (" forest : radius = 0.25 : density=4e-2", "forest:density=0.04:radius=0.25"),
+            ("pillars:radius=.8..1", "pillars:radius=0.8..1"),
+            ("wall:offset=-5..5:incidence=-20", "wall:incidence=-20:offset=-5..5"),
+            ("poisson-forest:density=1/25:run-up=30", "poisson-forest:density=0.04:run-up=30"),
+        ];
+        for (text, shown) in cases {
+            assert_eq!(text.parse::<CourseKind>().unwrap().to_string(), shown);
+        }
+        let kind =
+            CourseKind::Wall(Wall { offset_m: [-5.0, 5.0], incidence_deg: [-20.0; 2], ..Wall::default() });
+        assert_eq!(kind.to_string(), cases[4].1);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let cases = [
+            (
+                "woods",
+                "world is \"woods\", expected wall, corridor, city, forest, pillars, poisson-forest, dead-end, wires",
+            ),
+            ("", "world is \"\", expected wall, corridor, "),
+            (
+                "forest:0.02",
+                "world is forest with \"0.02\", expected PARAMETER=VALUE with one of density, radius, ",
+            ),
+            (
+                "forest:width=3",
+                "world is forest with \"width=3\", expected PARAMETER=VALUE with one of density, ",
+            ),
+            ("forest:density=", "density is \"\", expected 0.0001 to 0.04 per m²"),
+            ("forest:density=1", "density is \"1\", expected 0.0001 to 0.04 per m²"),
+            ("forest:density=1/0", "density is \"1/0\", expected 0.0001 to 0.04 per m²"),
+            ("forest:density=nan", "density is \"nan\", expected 0.0001 to 0.04 per m²"),
+            (
+                "forest:radius=0.4..0.2",
+                "radius is \"0.4..0.2\", expected a value or a range such as 0.05..5 within 0.05 to 5 m",
+            ),
+            ("forest:radius=0.2-0.4", "radius is \"0.2-0.4\", expected a value or a range such as 0.05..5"),
+        ];
+        for (text, expected) in cases {
+            let found = text.parse::<CourseKind>().unwrap_err().to_string();
+            assert!(found.starts_with(expected), "{found}");
+        }
+        let kind = CourseKind::City(City { length_m: f64::NAN, ..City::default() });
+        assert_eq!(kind.course(0).unwrap_err().to_string(), "length is NaN, expected 10 to 2000 m");
+    }
+
+    #[test]
+    fn a_world_of_too_many_trees_is_refused() {
+        let kind: CourseKind = "forest:length=1000:density=1/25".parse().unwrap();
+        let found = kind.course(0).map(|course| course.world.surfaces.len());
+        assert!(found.as_ref().is_ok_and(|surfaces| (6000..8192).contains(surfaces)), "{found:?}");
+        let kind: CourseKind = "poisson-forest:forest=1000:density=1/9".parse().unwrap();
+        let found = kind.course(0).unwrap_err().to_string();
+        assert_eq!(found, "world is 14129 obstacles by length and density, expected at most 8192");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_is_shown_is_read_as_the_same(
+            which in 0..8_usize,
+            changes in prop::collection::vec((0..6_usize, -100.0..100.0_f64, 0.0..1.0_f64), 0..4),
+        ) {
+            let mut kind = CourseKind::all()[which];
+            let mut fields = kind.fields();
+            let count = fields.len();
+            for (field, value, more) in changes {
+                let value = if value > 0.0 { more / 7.0 } else { value };
+                // What is out of a parameter's range changes nothing.
+                let field = &mut fields[field % count];
+                let _ = field.read(&format!("{value}..{}", value + more)).or_else(|_| field.read(&value.to_string()));
+            }
+            drop(fields);
+            prop_assert_eq!(kind.to_string().parse::<CourseKind>().unwrap(), kind);
+        }
+
+        #[test]
+        fn text_that_looks_like_it_never_panics(
+            text in "(wall|forest|city|corridor)(:(density|width|offset|radius)?=?[-0-9./e]{0,8}){0,4}",
+        ) {
+            let _ = text.parse::<CourseKind>();
+        }
     }
 }
