@@ -24,6 +24,7 @@ pub mod scenes;
 mod surface;
 mod texture;
 mod truth;
+pub mod vehicle;
 mod world;
 
 pub use rays::RayTable;
