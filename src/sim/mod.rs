@@ -28,7 +28,7 @@ pub mod vehicle;
 mod world;
 
 pub use rays::RayTable;
-pub use render::{View, render};
+pub use render::{View, nearness, render};
 pub use surface::Surface;
 pub use truth::{Motion, Seen, displacement};
 pub use world::{Hit, World};
