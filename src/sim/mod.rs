@@ -18,6 +18,9 @@
 //! # }
 //! ```
 
+mod clearance;
+pub mod course;
+mod random;
 mod rays;
 mod render;
 pub mod scenes;
@@ -27,8 +30,10 @@ mod truth;
 pub mod vehicle;
 mod world;
 
+pub use course::{Course, CourseKind};
+pub use random::Random;
 pub use rays::RayTable;
 pub use render::{View, nearness, render};
-pub use surface::Surface;
+pub use surface::{Form, Surface};
 pub use truth::{Motion, Seen, displacement};
 pub use world::{Hit, World};

@@ -7,13 +7,28 @@ use crate::error::{Error, Result};
 /// A textured surface of a [`World`](super::World). All lengths are in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    origin_world: DVec3,
-    local_from_world: DMat3,
-    shape: Shape,
+    pub(super) origin_world: DVec3,
+    pub(super) local_from_world: DMat3,
+    pub(super) shape: Shape,
+    form: Form,
+}
+
+/// What a [`Surface`] was made of: the arguments of the function that made it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)] // Each says what its fields are by the function of its name.
+pub enum Form {
+    /// [`Surface::plane`].
+    Plane { point_world: DVec3, normal_world: DVec3 },
+    /// [`Surface::rectangle`].
+    Rectangle { centre_world: DVec3, to_right: DVec3, to_top: DVec3 },
+    /// [`Surface::cylinder`].
+    Cylinder { base_world: DVec3, top_world: DVec3, radius_m: f64 },
+    /// [`Surface::cuboid`].
+    Cuboid { centre_world: DVec3, world_from_box: DMat3, edges_m: DVec3 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Shape {
+pub(super) enum Shape {
     /// z = 0, without end.
     Plane,
     /// z = 0 between ±half.
@@ -42,14 +57,15 @@ pub(super) struct SurfaceHit {
 }
 
 impl Surface {
-    /// An endless plane.
+    /// An endless plane. Its normal points to where there is room; what lies behind it is solid.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a place that is not finite, or a normal of no direction.
     pub fn plane(point_world: DVec3, normal_world: DVec3) -> Result<Self> {
         let normal = direction("plane normal", normal_world)?;
         let (u, v) = normal.any_orthonormal_pair();
-        Self::new(point_world, DMat3::from_cols(u, v, normal), Shape::Plane)
+        let form = Form::Plane { point_world, normal_world };
+        Self::new(point_world, DMat3::from_cols(u, v, normal), Shape::Plane, form)
     }
 
     /// A rectangle, seen from both sides. `to_right` and `to_top` lead from its centre to the middles of two of its edges.
@@ -67,7 +83,9 @@ impl Surface {
         }
         let normal = u.cross(v).normalize();
         let half_m = [to_right.length(), to_top.length()];
-        Self::new(centre_world, DMat3::from_cols(u, normal.cross(u), normal), Shape::Rectangle { half_m })
+        let form = Form::Rectangle { centre_world, to_right, to_top };
+        let world_from_local = DMat3::from_cols(u, normal.cross(u), normal);
+        Self::new(centre_world, world_from_local, Shape::Rectangle { half_m }, form)
     }
 
     /// A cylinder with lids, from the centre of one to that of the other.
@@ -79,7 +97,8 @@ impl Surface {
         let (u, v) = axis.any_orthonormal_pair();
         let length_m = (top_world - base_world).length();
         positive("cylinder radius", radius_m)?;
-        Self::new(base_world, DMat3::from_cols(u, v, axis), Shape::Cylinder { radius_m, length_m })
+        let form = Form::Cylinder { base_world, top_world, radius_m };
+        Self::new(base_world, DMat3::from_cols(u, v, axis), Shape::Cylinder { radius_m, length_m }, form)
     }
 
     /// A box of these edge lengths, turned by a rotation.
@@ -92,14 +111,20 @@ impl Surface {
         if !off.iter().all(|e| e.abs() <= 1e-9) {
             return Err(Error::parameter("world_from_box", world_from_box, "a rotation"));
         }
-        Self::new(centre_world, world_from_box, Shape::Cuboid { half_m: edges_m / 2.0 })
+        let form = Form::Cuboid { centre_world, world_from_box, edges_m };
+        Self::new(centre_world, world_from_box, Shape::Cuboid { half_m: edges_m / 2.0 }, form)
     }
 
-    fn new(origin_world: DVec3, world_from_local: DMat3, shape: Shape) -> Result<Self> {
+    /// What the surface was made of.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
+    fn new(origin_world: DVec3, world_from_local: DMat3, shape: Shape, form: Form) -> Result<Self> {
         if !origin_world.is_finite() {
             return Err(Error::parameter("place of a surface", origin_world, "three finite coordinates"));
         }
-        Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape })
+        Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape, form })
     }
 
     /// The length after which the texture repeats along u, if u runs around something.

@@ -1,0 +1,87 @@
+use super::field::{self, Field};
+use super::scatter::{Area, poisson_disc};
+use super::{Course, VISIBLE_M, northward, trunk};
+use crate::error::Result;
+use crate::sim::Random;
+
+/// How far trees stand to both sides of the way, and behind the start.
+const HALF_WIDTH_M: f64 = 80.0;
+const BEHIND_M: f64 = 20.0;
+
+/// Upright trunks, none too near another. They are higher than the band of altitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forest {
+    /// Trees to the square metre: 1/10000 to 1/25, by default 1/100. Two trunks' axes are at least 0.7/√density apart.
+    pub density_per_m2: f64,
+    /// Of a trunk. 0.05 to 5 m, by default 0.2 to 0.4.
+    pub radius_m: [f64; 2],
+    /// Of a tree. 1 to 100 m, by default 20 to 25.
+    pub height_m: [f64; 2],
+    /// To the north; the trees go on beyond. 10 to 1000 m, by default 200.
+    pub length_m: f64,
+    /// Around the start there is no tree within this. 1 to 500 m, by default 20.
+    pub free_m: f64,
+}
+
+impl Default for Forest {
+    fn default() -> Self {
+        Self {
+            density_per_m2: 1.0 / 100.0,
+            radius_m: [0.2, 0.4],
+            height_m: [20.0, 25.0],
+            length_m: 200.0,
+            free_m: 20.0,
+        }
+    }
+}
+
+impl Forest {
+    /// The same with thick trunks that are farther apart: radius 0.8 to 1.2 m, one to 200 m².
+    pub const PILLARS: Self = Self {
+        density_per_m2: 1.0 / 200.0,
+        radius_m: [0.8, 1.2],
+        height_m: [20.0, 25.0],
+        length_m: 200.0,
+        free_m: 20.0,
+    };
+
+    /// Checks that every parameter is within its range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) naming the first that is not.
+    pub fn validate(&self) -> Result<()> {
+        field::check(&{ *self }.fields())
+    }
+
+    /// The course of a seed.
+    ///
+    /// # Errors
+    /// As [`Forest::validate`], and for more trees than a world holds.
+    pub fn course(&self, seed: u64) -> Result<Course> {
+        self.validate()?;
+        let random = Random::new(seed);
+        let area =
+            Area { north_m: [-BEHIND_M, self.length_m + VISIBLE_M], east_m: [-HALF_WIDTH_M, HALF_WIDTH_M] };
+        let mut trunks = Vec::new();
+        for (i, place) in
+            poisson_disc(&mut random.fork(0), area, self.density_per_m2)?.into_iter().enumerate()
+        {
+            let mut random = random.fork(1 + i as u64);
+            let [radius_m, height_m] = [self.radius_m, self.height_m].map(|range| random.within(range));
+            if place.length() - radius_m >= self.free_m {
+                trunks.push(trunk(place, radius_m, height_m)?);
+            }
+        }
+        northward(seed, trunks, self.length_m, [2.0, 18.0])
+    }
+
+    pub(super) fn fields(&mut self) -> Vec<Field<'_>> {
+        vec![
+            Field::one("density", &mut self.density_per_m2, [1e-4, 1.0 / 25.0], "per m²"),
+            Field::range("radius", &mut self.radius_m, [0.05, 5.0], "m"),
+            Field::range("height", &mut self.height_m, [1.0, 100.0], "m"),
+            Field::one("length", &mut self.length_m, [10.0, 1000.0], "m"),
+            Field::one("free", &mut self.free_m, [1.0, 500.0], "m"),
+        ]
+    }
+}

@@ -1,0 +1,164 @@
+//! Worlds to fly through, made from a seed.
+//!
+//! All of them are in NED: x to the north, y to the east, z down, the ground at z = 0. The way leads north unless said
+//! otherwise. A seed gives the same world on every machine, to the last bits of its sines.
+//!
+//! ```
+//! use viewsphere::sim::CourseKind;
+//!
+//! # fn main() -> viewsphere::Result<()> {
+//! let kind: CourseKind = "forest:density=1/64:radius=0.2..0.3".parse()?;
+//! let course = kind.course(7)?;
+//! assert!(course.world.clearance_m(course.start_ned_m) > 9.0);
+//! assert_eq!(course.name, "forest:density=0.015625:radius=0.2..0.3");
+//! # Ok(())
+//! # }
+//! ```
+
+mod city;
+mod corridor;
+mod dead_end;
+mod field;
+mod forest;
+mod kind;
+mod poisson_forest;
+mod scatter;
+mod wall;
+
+use glam::{DVec2, DVec3};
+
+pub use self::city::City;
+pub use self::corridor::Corridor;
+pub use self::dead_end::DeadEnd;
+pub use self::forest::Forest;
+pub use self::kind::CourseKind;
+pub use self::poisson_forest::PoissonForest;
+pub use self::wall::Wall;
+
+use super::{Surface, World};
+use crate::error::{Error, Result};
+
+/// Where flights begin, metres above the ground.
+const START_ALTITUDE_M: f64 = 10.0;
+/// As far as obstacles are seen in time to matter: what comes after the end of the way stands there as well, so that no
+/// end is seen before it is reached.
+const VISIBLE_M: f64 = 60.0;
+/// The most surfaces of a world: more than anyone can render in the time of a flight.
+const MAX_SURFACES: usize = 16_384;
+
+/// A world to fly through, and what is asked of who flies there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// What it was made by: a generator with what differs from its defaults, as [`CourseKind`] reads it.
+    pub name: String,
+    /// What its generator was begun with.
+    pub seed: u64,
+    /// What stands there. Up is against z.
+    pub world: World,
+    /// Where the flight begins.
+    pub start_ned_m: DVec3,
+    /// Where the vehicle heads at first: clockwise from north, seen from above.
+    pub start_yaw_rad: f64,
+    /// The direction in which progress is wanted, the whole way: clockwise from north, seen from above.
+    pub goal_yaw_rad: f64,
+    /// The flight has succeeded when it has come so far in that direction.
+    pub length_m: f64,
+    /// Least and greatest height above the ground that the flight is to keep.
+    pub altitude_m: [f64; 2],
+    /// Points (north, east) of the middle of the way, where the way has one; empty elsewhere.
+    pub centre_line_m: Vec<DVec2>,
+}
+
+impl Course {
+    /// How far a place is from the start in the direction of the goal.
+    pub fn progress_m(&self, position_ned_m: DVec3) -> f64 {
+        (position_ned_m - self.start_ned_m).truncate().dot(heading(self.goal_yaw_rad))
+    }
+
+    /// How far a place is to the right of the middle of the way, negative to the left of it; `None` where the way has no
+    /// middle.
+    pub fn offset_m(&self, position_ned_m: DVec3) -> Option<f64> {
+        let place = position_ned_m.truncate();
+        let offsets = self.centre_line_m.windows(2).filter_map(|ends| {
+            let along = (ends[1] - ends[0]).try_normalize()?;
+            let from_first = place - ends[0];
+            let nearest = ends[0] + along * from_first.dot(along).clamp(0.0, ends[0].distance(ends[1]));
+            Some(place.distance(nearest).copysign(along.perp_dot(from_first)))
+        });
+        offsets.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    }
+
+    /// Checks that the course can be flown: that its numbers are finite and in order, and that there is room at the start.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the field.
+    pub fn validate(&self) -> Result<()> {
+        if self.world.surfaces.len() > MAX_SURFACES {
+            let found = format!("{} surfaces", self.world.surfaces.len());
+            return Err(Error::parameter("world", found, format_args!("at most {MAX_SURFACES}")));
+        }
+        if self.world.up_world != DVec3::NEG_Z {
+            return Err(Error::parameter("up_world", self.world.up_world, "against z"));
+        }
+        for (name, yaw_rad) in [("start_yaw_rad", self.start_yaw_rad), ("goal_yaw_rad", self.goal_yaw_rad)] {
+            if !yaw_rad.is_finite() {
+                return Err(Error::parameter(name, yaw_rad, "a finite angle"));
+            }
+        }
+        if !(self.length_m > 0.0 && self.length_m.is_finite()) {
+            return Err(Error::parameter("length_m", self.length_m, "above 0 and finite"));
+        }
+        let [low, high] = self.altitude_m;
+        if !(low >= 0.0 && low < high && high.is_finite()) {
+            let found = format_args!("{low} to {high}");
+            return Err(Error::parameter("altitude_m", found, "a band from 0 or more to something higher"));
+        }
+        if !self.centre_line_m.iter().all(|point| point.is_finite()) || self.centre_line_m.len() == 1 {
+            let found = format_args!("{} points", self.centre_line_m.len());
+            return Err(Error::parameter("centre_line_m", found, "none, or two and more that are finite"));
+        }
+        let clearance_m = self.world.clearance_m(self.start_ned_m);
+        if !(clearance_m > 0.0) {
+            let found = format_args!("{} with {clearance_m} m to the nearest surface", self.start_ned_m);
+            return Err(Error::parameter("start_ned_m", found, "a place with room"));
+        }
+        Ok(())
+    }
+}
+
+/// The horizontal direction of a yaw: north, east.
+fn heading(yaw_rad: f64) -> DVec2 {
+    DVec2::new(yaw_rad.cos(), yaw_rad.sin())
+}
+
+/// A course to the north that begins at the origin, with the ground and these surfaces.
+fn northward(seed: u64, obstacles: Vec<Surface>, length_m: f64, altitude_m: [f64; 2]) -> Result<Course> {
+    let ground = Surface::plane(DVec3::ZERO, DVec3::NEG_Z)?;
+    let surfaces = std::iter::once(ground).chain(obstacles).collect();
+    Ok(Course {
+        name: String::new(),
+        seed,
+        world: World { surfaces, up_world: DVec3::NEG_Z },
+        start_ned_m: DVec3::NEG_Z * START_ALTITUDE_M,
+        start_yaw_rad: 0.0,
+        goal_yaw_rad: 0.0,
+        length_m,
+        altitude_m,
+        centre_line_m: Vec::new(),
+    })
+}
+
+/// An upright wall from one place (north, east) to another, as thin as a [`Surface::rectangle`].
+fn wall_between(from: DVec2, to: DVec2, height_m: f64) -> Result<Surface> {
+    let half_height = DVec3::NEG_Z * height_m / 2.0;
+    Surface::rectangle(
+        from.midpoint(to).extend(0.0) + half_height,
+        (to - from).extend(0.0) / 2.0,
+        half_height,
+    )
+}
+
+/// A tree or pillar at a place (north, east).
+fn trunk(place: DVec2, radius_m: f64, height_m: f64) -> Result<Surface> {
+    Surface::cylinder(place.extend(0.0), place.extend(-height_m), radius_m)
+}
