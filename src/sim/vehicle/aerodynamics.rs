@@ -90,3 +90,60 @@ impl AirframeParams {
         (self.weight_n() / of_one.max(0.0)).sqrt()
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lift_and_drag_are_a_wings_below_the_stall_and_a_plates_beyond() {
+        let params = AirframeParams::default();
+        let at = |degrees: f64| params.lift_and_drag(degrees.to_radians());
+        // Flow that parts at 15° leaves e^(−40·0.26) of a wing at 0°, on either side.
+        let [lift, drag] = at(0.0);
+        assert!((lift - 0.25).abs() <= 3e-5 && (drag - 0.035 - 0.0625 / (PI * 0.8 * 4.8)).abs() <= 1e-5);
+        // Half of each at 15°.
+        let (sin, cos) = 15_f64.to_radians().sin_cos();
+        let half = (0.25 + params.lift_slope() * 15_f64.to_radians() + 2.0 * sin * sin * cos) / 2.0;
+        assert!((at(15.0)[0] - half).abs() <= 1e-6);
+        // The plate across the stream, and from behind.
+        let [lift, drag] = at(90.0);
+        assert!(lift.abs() <= 1e-6 && (drag - 2.035).abs() <= 1e-6);
+        assert!((at(-90.0)[1] - 2.035).abs() <= 1e-6);
+        for tenth in -1800..=1800 {
+            let [lift, drag] = at(f64::from(tenth) / 10.0);
+            assert!(drag >= 0.035 && lift.abs() <= 1.2, "{tenth}: {lift} {drag}");
+        }
+        assert!((params.largest_lift() - 1.06).abs() <= 0.005);
+        assert!((params.stall_speed_m_s(0.0) - 7.78).abs() <= 0.005);
+    }
+
+    #[test]
+    fn the_air_pushes_back_whatever_it_meets() {
+        let params = AirframeParams::default();
+        for i in 0..1000 {
+            let angle = f64::from(i);
+            let velocity = DVec3::new(angle.sin(), (1.7 * angle).cos(), (2.3 * angle).sin()) * 15.0;
+            let inflow = Inflow::new(velocity);
+            assert!(params.force_n(&inflow).dot(velocity) < 0.0, "{velocity}");
+            // What is left of the moment when the vanes' part is taken off only damps.
+            let rate = DVec3::new((3.1 * angle).sin(), angle.cos(), (0.7 * angle).sin());
+            let damping = params.moment_n_m(&inflow, rate) - params.moment_n_m(&inflow, DVec3::ZERO);
+            assert!(damping.dot(rate) < 0.0, "{damping} {rate}");
+        }
+        let still = Inflow::new(DVec3::ZERO);
+        assert_eq!(params.force_n(&still), DVec3::ZERO);
+        assert_eq!(params.moment_n_m(&still, DVec3::ONE), DVec3::ZERO);
+    }
+
+    /// The signs of a stable airframe: it turns its nose into the wind, and rolls away from it.
+    #[test]
+    fn the_vanes_turn_into_the_wind() {
+        let params = AirframeParams::default();
+        let moment = |velocity| params.moment_n_m(&Inflow::new(velocity), DVec3::ZERO);
+        let from_the_right = moment(DVec3::new(12.0, 2.0, 0.6));
+        assert!(from_the_right.z > 0.0 && from_the_right.x < 0.0);
+        assert!(moment(DVec3::new(12.0, 0.0, 3.0)).y < 0.0 && moment(DVec3::new(12.0, 0.0, -3.0)).y > 0.0);
+    }
+}

@@ -134,3 +134,29 @@ impl Controls {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_legal_and_each_field_is_checked() {
+        let good = Autopilot::default();
+        good.validate().unwrap();
+        let wrong = [
+            ("bank_per_s", Autopilot { bank_per_s: 0.0, ..good }),
+            ("roll_limit_rad_s", Autopilot { roll_limit_rad_s: -1.0, ..good }),
+            ("rate_per_s", Autopilot { rate_per_s: f64::NAN, ..good }),
+            ("climb_per_s", Autopilot { climb_per_s: f64::INFINITY, ..good }),
+            ("attack_per_s", Autopilot { attack_per_s: 0.0, ..good }),
+            ("attack_limit_rad", Autopilot { attack_limit_rad: 0.0, ..good }),
+            ("sideslip_per_s", Autopilot { sideslip_per_s: 0.0, ..good }),
+            ("speed_per_s", Autopilot { speed_per_s: 0.0, ..good }),
+        ];
+        for (name, autopilot) in wrong {
+            let text = autopilot.validate().unwrap_err().to_string();
+            assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
+        }
+    }
+}

@@ -25,9 +25,11 @@
 //! ```
 
 mod aerodynamics;
+mod air_data;
 mod airframe;
 mod autopilot;
 mod dynamics;
+mod gyro;
 mod params;
 mod random;
 mod state;
@@ -35,9 +37,11 @@ mod trim;
 mod turn;
 mod wind;
 
+pub use air_data::{AirspeedModel, VaneErrors, VaneModel};
 pub use airframe::Airframe;
 pub use autopilot::Autopilot;
 pub use dynamics::Controls;
+pub use gyro::{GyroErrors, GyroModel};
 pub use params::AirframeParams;
 pub use state::{GRAVITY_M_S2, MAX_STEP_S, STEP_S, Start, Vehicle, VehicleState};
 pub use trim::Trim;

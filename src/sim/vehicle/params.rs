@@ -95,8 +95,9 @@ impl AirframeParams {
             ("wing_area_m2", self.wing_area_m2),
             ("span_m", self.span_m),
             ("chord_m", self.chord_m),
-            ("inertia_kg_m2", self.inertia_kg_m2.min_element()),
-            ("inertia_kg_m2", self.inertia_kg_m2.max_element()),
+            ("inertia_kg_m2", self.inertia_kg_m2.x),
+            ("inertia_kg_m2", self.inertia_kg_m2.y),
+            ("inertia_kg_m2", self.inertia_kg_m2.z),
             ("air_density_kg_m3", self.air_density_kg_m3),
             ("oswald", self.oswald),
             ("stall_rad", self.stall_rad),
@@ -104,11 +105,11 @@ impl AirframeParams {
         ] {
             positive(name, value)?;
         }
-        let torque = self.torque_limit_n_m;
         for (name, value) in [
             ("drag_zero", self.drag_zero),
-            ("torque_limit_n_m", torque.min_element()),
-            ("torque_limit_n_m", torque.max_element()),
+            ("torque_limit_n_m", self.torque_limit_n_m.x),
+            ("torque_limit_n_m", self.torque_limit_n_m.y),
+            ("torque_limit_n_m", self.torque_limit_n_m.z),
             ("thrust_limit_n", self.thrust_limit_n),
         ] {
             not_negative(name, value)?;
@@ -151,5 +152,54 @@ impl AirframeParams {
     pub fn lift_slope(&self) -> f64 {
         let ratio = self.aspect_ratio();
         std::f64::consts::TAU * ratio / (ratio + 2.0)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_legal_and_each_field_is_checked() {
+        let good = AirframeParams::default();
+        good.validate().unwrap();
+        let wrong = [
+            ("mass_kg", AirframeParams { mass_kg: 0.0, ..good }),
+            ("wing_area_m2", AirframeParams { wing_area_m2: -0.3, ..good }),
+            ("span_m", AirframeParams { span_m: f64::INFINITY, ..good }),
+            ("chord_m", AirframeParams { chord_m: f64::NAN, ..good }),
+            ("inertia_kg_m2", AirframeParams { inertia_kg_m2: DVec3::new(0.1, 0.0, 0.1), ..good }),
+            ("inertia_kg_m2", AirframeParams { inertia_kg_m2: DVec3::new(0.1, f64::NAN, 0.1), ..good }),
+            ("inertia_kg_m2", AirframeParams { inertia_kg_m2: DVec3::new(f64::NAN, 0.1, 0.1), ..good }),
+            ("air_density_kg_m3", AirframeParams { air_density_kg_m3: 0.0, ..good }),
+            ("oswald", AirframeParams { oswald: 0.0, ..good }),
+            ("stall_rad", AirframeParams { stall_rad: 0.0, ..good }),
+            ("stall_sharpness", AirframeParams { stall_sharpness: 0.0, ..good }),
+            ("drag_zero", AirframeParams { drag_zero: -0.01, ..good }),
+            ("torque_limit_n_m", AirframeParams { torque_limit_n_m: DVec3::new(1.0, 1.0, -1.0), ..good }),
+            ("thrust_limit_n", AirframeParams { thrust_limit_n: f64::INFINITY, ..good }),
+            ("side_by_sideslip", AirframeParams { side_by_sideslip: 0.8, ..good }),
+            ("roll_damping", AirframeParams { roll_damping: 0.45, ..good }),
+            ("pitch_damping", AirframeParams { pitch_damping: f64::NAN, ..good }),
+            ("yaw_damping", AirframeParams { yaw_damping: 0.12, ..good }),
+            ("lift_zero", AirframeParams { lift_zero: f64::NAN, ..good }),
+            ("roll_by_sideslip", AirframeParams { roll_by_sideslip: f64::NAN, ..good }),
+            ("pitch_by_attack", AirframeParams { pitch_by_attack: f64::INFINITY, ..good }),
+            ("pitch_attack_rad", AirframeParams { pitch_attack_rad: f64::NAN, ..good }),
+            ("yaw_by_sideslip", AirframeParams { yaw_by_sideslip: f64::NAN, ..good }),
+        ];
+        for (name, params) in wrong {
+            let text = params.validate().unwrap_err().to_string();
+            assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_wing_is_that_of_the_default() {
+        let params = AirframeParams::default();
+        assert!((params.aspect_ratio() - 4.8).abs() <= 1e-12);
+        assert!((params.lift_slope() - 4.435_190).abs() <= 1e-6);
+        assert!((params.weight_n() - 11.767_98).abs() <= 1e-9);
     }
 }

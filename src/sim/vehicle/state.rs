@@ -104,3 +104,42 @@ pub(super) fn not_negative(name: &'static str, value: f64) -> Result<()> {
     }
     Err(Error::parameter(name, value, "0 or above, and finite"))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_field_of_a_start_is_checked() {
+        let good = Start { position_ned_m: DVec3::ZERO, yaw_rad: 0.0, speed_m_s: 12.0 };
+        good.validate().unwrap();
+        let wrong = [
+            ("position_ned_m", Start { position_ned_m: DVec3::NAN, ..good }),
+            ("yaw_rad", Start { yaw_rad: f64::INFINITY, ..good }),
+            ("speed_m_s", Start { speed_m_s: 0.0, ..good }),
+            ("speed_m_s", Start { speed_m_s: f64::NAN, ..good }),
+        ];
+        for (name, start) in wrong {
+            let text = start.validate().unwrap_err().to_string();
+            assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_level_vehicle_heading_east_has_a_camera_that_looks_east() {
+        let state = VehicleState {
+            time_s: 0.0,
+            position_ned_m: DVec3::new(1.0, 2.0, -3.0),
+            velocity_ned_m_s: DVec3::ZERO,
+            world_from_body: crate::camera::world_from_body(0.0, 0.0, std::f64::consts::FRAC_PI_2),
+            rate_body_rad_s: DVec3::ZERO,
+            air_velocity_body_m_s: DVec3::ZERO,
+        };
+        let pose = state.camera_pose();
+        assert_eq!(pose.position_world, state.position_ned_m);
+        for (camera, world) in [(DVec3::Z, DVec3::Y), (DVec3::X, DVec3::NEG_X), (DVec3::Y, DVec3::Z)] {
+            assert!((pose.world_from_camera * camera - world).length() <= 1e-15);
+        }
+    }
+}

@@ -159,3 +159,26 @@ impl Lag {
         self.angle_rad + (self.rate_rad_s + (after.rate_rad_s - self.rate_rad_s) * part / 2.0) * part * step_s
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_legal_and_each_field_is_checked() {
+        let good = TurnParams::default();
+        good.validate().unwrap();
+        let wrong = [
+            ("bank_lag_s", TurnParams { bank_lag_s: 0.0, ..good }),
+            ("bank_rate_rad_s", TurnParams { bank_rate_rad_s: f64::NAN, ..good }),
+            ("climb_lag_s", TurnParams { climb_lag_s: f64::INFINITY, ..good }),
+            ("attack_rad", TurnParams { attack_rad: 2.0, ..good }),
+            ("attack_rad", TurnParams { attack_rad: f64::NAN, ..good }),
+        ];
+        for (name, params) in wrong {
+            let text = params.validate().unwrap_err().to_string();
+            assert!(text.starts_with(name) && !text.contains('\n'), "{text}");
+        }
+    }
+}
