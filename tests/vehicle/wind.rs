@@ -1,6 +1,6 @@
 //! Steady wind and gusts.
 
-use viewsphere::sim::vehicle::{Gusts, Vehicle, Wind};
+use viewsphere::sim::vehicle::{Gusts, STEP_S, Vehicle, Wind};
 
 use super::*;
 
@@ -91,6 +91,26 @@ fn a_seed_is_a_wind_and_another_seed_another() {
     assert!((flown(1).position_ned_m - flown(2).position_ned_m).length() > 0.1);
 }
 
+/// Gusts change along the way through the air.
+#[test]
+fn both_vehicles_meet_the_gusts_of_their_way() {
+    let wind = Wind::new(AWAY, Some(Gusts::MODERATE), 5).unwrap();
+    let vehicles: [Box<dyn Vehicle>; 2] =
+        [Box::new(airframe(12.0, wind.clone())), Box::new(turner(12.0, wind.clone()))];
+    for mut vehicle in vehicles {
+        let mut wind = wind.clone();
+        let first = wind.ned_m_s();
+        for _ in 0..2400 {
+            wind.advance(vehicle.state().air_velocity_body_m_s.length() * STEP_S);
+            vehicle.advance(&bank(30.0), STEP_S);
+            let state = vehicle.state();
+            let met = state.velocity_ned_m_s - state.world_from_body * state.air_velocity_body_m_s;
+            assert!((met - wind.ned_m_s()).length() <= 1e-9, "{met} at {} s", state.time_s);
+        }
+        assert!((wind.ned_m_s() - first).length() > 0.1);
+    }
+}
+
 /// A minute of slalom in moderate gusts: the loop holds.
 #[test]
 fn the_airframe_flies_in_gusts() {
@@ -99,7 +119,7 @@ fn the_airframe_flies_in_gusts() {
         let mut plane = airframe(14.0, wind);
         while plane.state().time_s < 60.0 {
             let command = slalom(plane.state().time_s);
-            plane.advance(&command, viewsphere::sim::vehicle::STEP_S);
+            plane.advance(&command, STEP_S);
             let state = plane.state();
             let speed = state.air_velocity_body_m_s.length();
             assert!((9.0..19.0).contains(&speed) && bank_deg(&state).abs() < 70.0, "seed {seed}: {state:?}");
