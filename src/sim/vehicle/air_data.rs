@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::aerodynamics::Inflow;
-use super::random::Random;
 use super::state::{VehicleState, not_negative};
+use super::stream::Stream;
 use crate::error::{Error, Result};
+use crate::sim::Random;
 
 /// An airspeed sensor whose scale is wrong by the same share for a whole flight.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ impl AirspeedModel {
         if !(0.0..1.0).contains(&error) {
             return Err(Error::parameter("error", error, "0 or above, and below 1"));
         }
-        Ok(Self { scale: 1.0 + Random::new(seed).within([-error, error]) })
+        Ok(Self { scale: 1.0 + Stream::Airspeed.of(seed).within([-error, error]) })
     }
 
     /// What it shows, m/s.
@@ -72,7 +73,7 @@ impl VaneModel {
     pub fn new(errors: &VaneErrors, seed: u64) -> Result<Self> {
         not_negative("fixed_rad", errors.fixed_rad)?;
         not_negative("jitter_rad", errors.jitter_rad)?;
-        let mut random = Random::new(seed);
+        let mut random = Stream::Vanes.of(seed);
         let fixed_rad = std::array::from_fn(|_| errors.fixed_rad * random.normal());
         Ok(Self { fixed_rad, jitter_rad: errors.jitter_rad, random })
     }

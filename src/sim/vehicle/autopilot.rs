@@ -8,7 +8,7 @@ use crate::camera::roll_pitch_yaw_rad;
 use crate::error::Result;
 use crate::steer::Command;
 
-/// Commands of bank are kept below this, radians: at 75° the wing carries four times the weight.
+/// Commands of bank are kept below this, radians: at 75° the wing carries nearly four times the weight.
 const STEEPEST_RAD: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
 /// The inner loop: from bank, climb and airspeed to torques and thrust. Each gain is how fast an error goes, 1/s.

@@ -1,10 +1,10 @@
 use glam::DVec3;
 
-use super::random::Random;
 use super::state::{STEP_S, VehicleState, not_negative};
-use super::wind::normal;
+use super::stream::{Stream, normal};
 use crate::error::{Error, Result};
 use crate::imu::GyroSample;
+use crate::sim::Random;
 
 /// What is wrong with a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl GyroModel {
     /// As [`GyroErrors::validate`].
     pub fn new(errors: &GyroErrors, seed: u64) -> Result<Self> {
         errors.validate()?;
-        Ok(Self { errors: *errors, bias_rad_s: errors.bias_rad_s, last: None, random: Random::new(seed) })
+        Ok(Self { errors: *errors, bias_rad_s: errors.bias_rad_s, last: None, random: Stream::Gyro.of(seed) })
     }
 
     /// The next sample, to be taken at every step. A state of the time of the one before gives the same sample again.

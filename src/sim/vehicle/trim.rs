@@ -34,8 +34,10 @@ impl AirframeParams {
         let degrees = |n: i32| f64::from(n).to_radians();
         let carried = (-30..=30).find(|n| missing_n(degrees(*n)) <= 0.0).filter(|n| *n > -30);
         let Some(above) = carried else {
-            let expected =
-                format!("above the stall at {:.2} m/s, and to be met at ±30°", self.stall_speed_m_s(0.0));
+            let expected = format!(
+                "a speed to fly level at within ±30° of attack, stall at {:.2} m/s",
+                self.stall_speed_m_s(0.0)
+            );
             return Err(Error::parameter("speed_m_s", speed_m_s, expected));
         };
         let [mut low, mut high] = [degrees(above - 1), degrees(above)];

@@ -54,8 +54,8 @@ impl TurnParams {
 /// Relative to the air there is no sideslip, and the angle of attack is constant, about the body's y axis; with none the
 /// pitch is the climb. Wind adds to the velocity over ground, and a vertical wind lifts the whole.
 ///
-/// Rates run straight over a step, up to the rounding of the angles' kinematics: a gyro that samples at the steps and is
-/// integrated as [`imu::Gyro`](crate::imu::Gyro) does gives the turn back although commands come in jumps.
+/// Rates of bank and climb run straight over a step, also where a command jumps: a gyro that samples at the steps and is
+/// integrated as [`imu::Gyro`](crate::imu::Gyro) does gives the rotation back.
 #[derive(Clone, Debug)]
 pub struct CoordinatedTurn {
     params: TurnParams,
@@ -118,16 +118,17 @@ impl Vehicle for CoordinatedTurn {
         let Some(step_s) = bounded(step_s) else { return };
         let Command { bank_rad, climb_rad } = sound(command);
         let TurnParams { bank_lag_s, bank_rate_rad_s, climb_lag_s, .. } = self.params;
-        let before = self.clone();
+        let (bank, climb) = (self.bank, self.climb);
         self.bank.follow(bank_rad, bank_lag_s, bank_rate_rad_s, step_s);
         self.climb.follow(climb_rad, climb_lag_s, f64::INFINITY, step_s);
         // The rate of turn as a parabola over the step, integrated to its middle and to its end; the path by Simpson's rule.
-        let [a, b, c] = [0.0, 0.5, 1.0]
-            .map(|part| self.yaw_rate_rad_s(before.bank.toward(&self.bank, step_s, part)) * step_s);
-        let half_rad = before.yaw_rad + (5.0 * a + 8.0 * b - c) / 24.0;
-        self.yaw_rad = before.yaw_rad + (a + 4.0 * b + c) / 6.0;
-        let yaw_rad = [before.yaw_rad, half_rad, self.yaw_rad];
-        let path = [0.0, 0.5, 1.0].map(|part| before.climb.toward(&self.climb, step_s, part));
+        let [a, b, c] =
+            [0.0, 0.5, 1.0].map(|part| self.yaw_rate_rad_s(bank.toward(&self.bank, step_s, part)) * step_s);
+        let start_rad = self.yaw_rad;
+        let half_rad = start_rad + (5.0 * a + 8.0 * b - c) / 24.0;
+        self.yaw_rad = start_rad + (a + 4.0 * b + c) / 6.0;
+        let yaw_rad = [start_rad, half_rad, self.yaw_rad];
+        let path = [0.0, 0.5, 1.0].map(|part| climb.toward(&self.climb, step_s, part));
         let direction: [DVec3; 3] = std::array::from_fn(|i| world_from_body(0.0, path[i], yaw_rad[i]).x_axis);
         let mean = (direction[0] + 4.0 * direction[1] + direction[2]) / 6.0;
         self.position_ned_m += (mean * self.speed_m_s + self.wind.ned_m_s()) * step_s;

@@ -1,8 +1,9 @@
 use glam::DVec3;
 
-use super::random::Random;
 use super::state::{not_negative, positive};
+use super::stream::{Stream, normal};
 use crate::error::{Error, Result};
+use crate::sim::Random;
 
 /// Gusts on top of a steady wind: how strong, and over what length they change.
 ///
@@ -51,7 +52,7 @@ impl Wind {
         if !steady_ned_m_s.is_finite() {
             return Err(Error::parameter("steady_ned_m_s", steady_ned_m_s, "three finite speeds"));
         }
-        let mut random = Random::new(seed);
+        let mut random = Stream::Gusts.of(seed);
         let mut gust_ned_m_s = DVec3::ZERO;
         if let Some(gusts) = &gusts {
             gusts.validate()?;
@@ -77,10 +78,4 @@ impl Wind {
         let fresh = (DVec3::ONE - kept * kept).map(f64::sqrt);
         self.gust_ned_m_s = kept * self.gust_ned_m_s + gusts.intensity_m_s * fresh * normal(&mut self.random);
     }
-}
-
-/// Three independent draws of mean 0 and variance 1.
-pub(super) fn normal(random: &mut Random) -> DVec3 {
-    let [x, y, z] = std::array::from_fn(|_| random.normal());
-    DVec3::new(x, y, z)
 }
