@@ -45,6 +45,7 @@ pub mod plan;
 pub mod report;
 pub mod sim;
 pub mod sphere;
+pub mod steer;
 
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};

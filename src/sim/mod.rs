@@ -27,12 +27,13 @@ pub mod scenes;
 mod surface;
 mod texture;
 mod truth;
+pub mod vehicle;
 mod world;
 
 pub use course::{Course, CourseKind};
 pub use random::Random;
 pub use rays::RayTable;
-pub use render::{View, render};
+pub use render::{View, nearness, render};
 pub use surface::{Form, Surface};
 pub use truth::{Motion, Seen, displacement};
 pub use world::{Hit, World};

@@ -44,6 +44,34 @@ pub fn render(world: &World, rays: &RayTable, pose: &Pose) -> View {
     View { image, nearness_per_m }
 }
 
+/// How near a camera sees each of its pixels' centres: the nearness of [`render`], without the picture.
+pub fn nearness(world: &World, rays: &RayTable, pose: &Pose) -> Plane {
+    let size = rays.size();
+    let width = size.width as usize;
+    let mut plane = Plane { size, data: vec![0.0; size.pixels()] };
+    plane.data.par_chunks_mut(width * TILE).enumerate().for_each(|(tile_y, band)| {
+        for tile_x in 0..width.div_ceil(TILE) {
+            let surfaces = reached(world, rays, pose, [tile_x, tile_y]);
+            for (row, values) in band.chunks_exact_mut(width).enumerate() {
+                for (x, value) in values.iter_mut().enumerate().skip(tile_x * TILE).take(TILE) {
+                    let direction = pose.world_from_camera * rays.centre(x, tile_y * TILE + row);
+                    let hit = world.hit_among(surfaces.iter().copied(), pose.position_world, direction);
+                    let nearness = hit.map_or(0.0, |hit| 1.0 / hit.distance_m);
+                    *value = if direction.is_finite() { nearness as f32 } else { f32::NAN };
+                }
+            }
+        }
+    });
+    plane
+}
+
+/// The surfaces that can be seen in a tile.
+fn reached(world: &World, rays: &RayTable, pose: &Pose, [tile_x, tile_y]: [usize; 2]) -> Vec<usize> {
+    let sides = rays.sides(tile_x, tile_y).map(|side| pose.world_from_camera * side);
+    let within = |i: &usize| sides.iter().all(|side| world.surfaces[*i].reaches(pose.position_world, *side));
+    (0..world.surfaces.len()).filter(within).collect()
+}
+
 /// A square of pixels, and what can be seen in it.
 struct Tile<'a> {
     world: &'a World,
@@ -56,10 +84,7 @@ struct Tile<'a> {
 
 impl<'a> Tile<'a> {
     fn new(world: &'a World, rays: &'a RayTable, pose: &'a Pose, tile: [usize; 2]) -> Self {
-        let sides = rays.sides(tile[0], tile[1]).map(|side| pose.world_from_camera * side);
-        let within =
-            |i: &usize| sides.iter().all(|side| world.surfaces[*i].reaches(pose.position_world, *side));
-        let surfaces = (0..world.surfaces.len()).filter(within).collect();
+        let surfaces = reached(world, rays, pose, tile);
         let first = tile.map(|tile| tile * TILE);
         let mut tile = Self { world, rays, pose, first, surfaces, corners: [[None; CORNERS]; CORNERS] };
         let (width, height) = (rays.size().width as usize, rays.size().height as usize);

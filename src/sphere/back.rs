@@ -13,7 +13,6 @@ pub(super) struct Back<'a> {
     ideal: &'a Camera,
     view: &'a Sphere,
     cells_at: &'a Cells,
-    grid: [u32; 2],
     trust: BufId,
     cells: (BufId, Shape),
     looming: (BufId, Shape),
@@ -45,7 +44,6 @@ impl<'a> Back<'a> {
             ideal,
             view,
             cells_at: cells,
-            grid: view.sectors,
             trust,
             cells: of_cells,
             looming,
@@ -75,7 +73,7 @@ impl<'a> Back<'a> {
     ) {
         let Size { width, height } = self.ideal.size;
         let Size { width: columns, height: rows } = self.cells_at.size;
-        let Sphere { cell, step, window, .. } = *self.view;
+        let Sphere { cell, step, .. } = *self.view;
         if let Some(tangent) = self.tangent {
             steps.push(Step::new(&tangent::KERNEL, "sphere", pinhole(self.ideal), &[flow, turn], &[tangent]));
         }
@@ -95,37 +93,47 @@ impl<'a> Back<'a> {
             &[flow, turn, certainty[0], self.trust],
             &[self.cells],
         ));
-        let [origin, pitch] = self.cells_at.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
         steps.push(Step::new(
             &looming::KERNEL,
             "sphere",
-            looming::Params {
-                columns,
-                rows,
-                radius: window,
-                inner: window / 2,
-                pitch,
-                origin,
-                noise: (self.view.noise_px / self.ideal.f_u) as f32,
-                least_trust: self.view.least_trust as f32,
-            },
+            looming_params(self.view, self.ideal, self.cells_at),
             &[self.cells.0, motion],
             &[self.looming],
         ));
         steps.push(Step::new(
             &sectors::KERNEL,
             "sphere",
-            sectors::Params {
-                columns: self.grid[0],
-                rows: self.grid[1],
-                cell_columns: columns,
-                // A window is whole where all its cells are trusted; at half of that it still counts.
-                least_trust: 0.5 * self.view.least_trust as f32,
-                quantile: self.view.quantile as f32,
-            },
+            sectors_params(self.view, self.cells_at),
             &[self.cells.0, self.looming.0, self.ranges, self.members],
             &[self.sectors],
         ));
+    }
+}
+
+/// How nearness rate and divergence come of the cells.
+pub(super) fn looming_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> looming::Params {
+    let [origin, pitch] = cells.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
+    looming::Params {
+        columns: cells.size.width,
+        rows: cells.size.height,
+        radius: view.window,
+        inner: view.window / 2,
+        pitch,
+        origin,
+        noise: (view.noise_px / ideal.f_u) as f32,
+        least_trust: view.least_trust as f32,
+    }
+}
+
+/// How the cells are summed up in sectors.
+pub(super) fn sectors_params(view: &Sphere, cells: &Cells) -> sectors::Params {
+    sectors::Params {
+        columns: view.sectors[0],
+        rows: view.sectors[1],
+        cell_columns: cells.size.width,
+        // A window is whole where all its cells are trusted; at half of that it still counts.
+        least_trust: 0.5 * view.least_trust as f32,
+        quantile: view.quantile as f32,
     }
 }
 

@@ -14,6 +14,7 @@ pub mod model;
 mod motion;
 mod plan;
 mod sectors;
+mod summary;
 
 pub use alarm::{Alarm, AlarmFilter, Threat};
 pub use config::{Derotation, Sphere};
@@ -24,3 +25,4 @@ pub use motion::{Heading, Motion};
 pub use plan::Fields;
 pub(crate) use plan::{Eye, plan};
 pub use sectors::{Sector, Sectors};
+pub use summary::{CellFlow, Summary};

@@ -1,0 +1,89 @@
+//! Sensors of the air that meets the vehicle.
+
+use glam::DVec3;
+
+use super::aerodynamics::Inflow;
+use super::state::{VehicleState, not_negative};
+use super::stream::Stream;
+use crate::error::{Error, Result};
+use crate::sim::Random;
+
+/// An airspeed sensor whose scale is wrong by the same share for a whole flight.
+#[derive(Clone, Debug)]
+pub struct AirspeedModel {
+    scale: f64,
+}
+
+impl AirspeedModel {
+    /// The share that [`AirspeedModel::new`] is given as a rule: a pressure tube's that has been calibrated once.
+    pub const USUAL: f64 = 0.03;
+
+    /// A sensor whose error is drawn anywhere from −`error` to `error`, a share of the airspeed below 1.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a share that is not 0 or above and below 1.
+    pub fn new(error: f64, seed: u64) -> Result<Self> {
+        if !(0.0..1.0).contains(&error) {
+            return Err(Error::parameter("error", error, "0 or above, and below 1"));
+        }
+        Ok(Self { scale: 1.0 + Stream::Airspeed.of(seed).within([-error, error]) })
+    }
+
+    /// What it shows, m/s.
+    pub fn speed_m_s(&self, state: &VehicleState) -> f64 {
+        self.scale * state.air_velocity_body_m_s.length()
+    }
+}
+
+/// What is wrong with a pair of vanes. Both are standard deviations, of each vane, in radians, 0 or above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VaneErrors {
+    /// How they are mounted: the same for a whole flight.
+    pub fixed_rad: f64,
+    /// How they flutter: anew each time.
+    pub jitter_rad: f64,
+}
+
+impl Default for VaneErrors {
+    /// 1.4° of mounting, which is 2° for the direction, and 0.3° of flutter.
+    fn default() -> Self {
+        Self { fixed_rad: 1.4_f64.to_radians(), jitter_rad: 0.3_f64.to_radians() }
+    }
+}
+
+impl VaneErrors {
+    /// Vanes without errors.
+    pub const NONE: Self = Self { fixed_rad: 0.0, jitter_rad: 0.0 };
+}
+
+/// Vanes that show where the vehicle goes relative to the air: in calm air where it goes, in a wind that and the wind's
+/// share.
+#[derive(Clone, Debug)]
+pub struct VaneModel {
+    fixed_rad: [f64; 2],
+    jitter_rad: f64,
+    random: Random,
+}
+
+impl VaneModel {
+    /// A pair for the angle of attack and the sideslip. The same seed gives the same errors.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a deviation that is negative or not finite.
+    pub fn new(errors: &VaneErrors, seed: u64) -> Result<Self> {
+        not_negative("fixed_rad", errors.fixed_rad)?;
+        not_negative("jitter_rad", errors.jitter_rad)?;
+        let mut random = Stream::Vanes.of(seed);
+        let fixed_rad = std::array::from_fn(|_| errors.fixed_rad * random.normal());
+        Ok(Self { fixed_rad, jitter_rad: errors.jitter_rad, random })
+    }
+
+    /// The direction of motion that they show: a unit vector, FRD.
+    pub fn direction_body(&mut self, state: &VehicleState) -> DVec3 {
+        let inflow = Inflow::new(state.air_velocity_body_m_s);
+        let [attack, sideslip] = [inflow.attack_rad, inflow.sideslip_rad];
+        let [attack, sideslip] = [(attack, 0), (sideslip, 1)]
+            .map(|(angle, vane)| angle + self.fixed_rad[vane] + self.jitter_rad * self.random.normal());
+        DVec3::new(attack.cos() * sideslip.cos(), sideslip.sin(), attack.sin() * sideslip.cos())
+    }
+}

@@ -1,0 +1,238 @@
+//! The cheapest of the arcs that the aircraft can fly.
+//!
+//! A candidate is a bank that is held for a while, then level wings, with one of three climbs. It is followed as a
+//! coordinated turn (ψ̇ = g tan φ / V; the bank follows its command with a time constant and a largest rate) from the
+//! present state, the command before acting until the new one can. Its cost is that of the worst passage of an obstacle
+//! along it, of where it leads, and of what it takes.
+
+use glam::DVec3;
+
+use super::observation::Moving;
+use super::obstacles::Obstacle;
+use super::{Command, Goal, SteerConfig};
+
+/// Banks to each side, equally spaced up to the limit.
+const BANKS: i32 = 6;
+/// For how long a bank is held.
+const HOLDS_S: [f64; 3] = [0.5, 1.0, 1.8];
+/// Places along an arc at which obstacles are looked for.
+pub(super) const PLACES: usize = 20;
+/// Steps of the integration from one place to the next.
+const STEPS: usize = 4;
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// An arc, its cost, and where it leads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arc {
+    /// What is commanded for it.
+    pub command: Command,
+    /// Its cost.
+    pub cost: f64,
+    /// The part of the cost that obstacles make, 0 to the weight of the danger.
+    pub danger: f64,
+    /// Where it leads, from the aircraft along north, east and down, in metres.
+    pub path_ned_m: [DVec3; PLACES],
+}
+
+/// What the arcs start from.
+pub(super) struct Start {
+    pub(super) moving: Moving,
+    pub(super) goal: Goal,
+    /// What acts until the new command does.
+    pub(super) last: Command,
+}
+
+/// The cheapest arc.
+pub(super) fn cheapest(config: &SteerConfig, start: &Start, obstacles: &[Obstacle]) -> Arc {
+    let near = Near::new(config, start.moving.speed_m_s, obstacles);
+    let level = hold_altitude(config, &start.goal);
+    let climbs = [level, -config.max_climb_rad, config.max_climb_rad];
+    let mut best: Option<Arc> = None;
+    for climb_rad in climbs {
+        for i in -BANKS..=BANKS {
+            let command =
+                Command { bank_rad: config.max_bank_rad * f64::from(i) / f64::from(BANKS), climb_rad };
+            for hold_s in HOLDS_S {
+                let arc = arc(config, start, &near, command, hold_s, level);
+                if best.as_ref().is_none_or(|best| arc.cost < best.cost) {
+                    best = Some(arc);
+                }
+                // Level wings stay level, however long.
+                if i == 0 {
+                    break;
+                }
+            }
+        }
+    }
+    best.unwrap_or_else(|| unreachable!("there are candidates"))
+}
+
+/// The climb that leads back to the wanted altitude.
+pub(super) fn hold_altitude(config: &SteerConfig, goal: &Goal) -> f64 {
+    let climb = config.climb_per_m * goal.too_low_m.unwrap_or(0.0);
+    climb.clamp(-config.max_climb_rad, config.max_climb_rad)
+}
+
+fn arc(
+    config: &SteerConfig,
+    start: &Start,
+    near: &Near,
+    command: Command,
+    hold_s: f64,
+    level_rad: f64,
+) -> Arc {
+    let Moving { mut bank_rad, mut yaw_rad, mut climb_rad, speed_m_s } = start.moving;
+    let step_s = config.horizon_s / (PLACES * STEPS) as f64;
+    let (mut at, mut danger) = (DVec3::ZERO, 0.0_f64);
+    let mut path_ned_m = [DVec3::ZERO; PLACES];
+    for (k, place) in path_ned_m.iter_mut().enumerate() {
+        for step in 0..STEPS {
+            let time_s = (k * STEPS + step) as f64 * step_s;
+            let wanted = if time_s < config.latency_s {
+                start.last
+            } else if time_s < config.latency_s + hold_s {
+                command
+            } else {
+                Command { bank_rad: 0.0, ..command }
+            };
+            let rate = (wanted.bank_rad - bank_rad) / config.bank_time_s;
+            bank_rad += step_s * rate.clamp(-config.bank_rate_rad_s, config.bank_rate_rad_s);
+            yaw_rad += step_s * GRAVITY_M_S2 * bank_rad.tan() / speed_m_s;
+            climb_rad += step_s * (wanted.climb_rad - climb_rad) / config.climb_time_s;
+            let (sin, cos) = yaw_rad.sin_cos();
+            at += step_s
+                * speed_m_s
+                * DVec3::new(climb_rad.cos() * cos, climb_rad.cos() * sin, -climb_rad.sin());
+        }
+        *place = at;
+        let time_s = ((k + 1) * STEPS) as f64 * step_s;
+        let passage = near.passage(at);
+        let met = 1.0 / (1.0 + ((passage - 1.0) * config.radius_m / config.softness_m).exp());
+        danger = danger.max((-time_s / config.discount_s).exp() * met);
+    }
+    let weights = config.weights;
+    let danger = weights.danger * danger;
+    let cost = danger
+        + weights.goal * (1.0 - (yaw_rad - start.goal.yaw_rad).cos())
+        + weights.change * (command.bank_rad - start.last.bank_rad).powi(2)
+        + weights.bank * command.bank_rad.powi(2)
+        + weights.climb * (command.climb_rad - level_rad).powi(2);
+    Arc { command, cost, danger, path_ned_m }
+}
+
+/// Obstacles that can be reached, eight side by side, as the search for the nearest one wants them.
+struct Near(Vec<Eight>);
+
+#[derive(Clone, Copy)]
+struct Eight {
+    place: [[f32; 8]; 3],
+    /// One over the square of the distance at which each is to be passed; 0 where there is none.
+    scale: [f32; 8],
+}
+
+/// Beyond so many times the distance at which an obstacle is to be passed it makes no difference.
+const FAR: f32 = 10.0;
+
+impl Near {
+    fn new(config: &SteerConfig, speed_m_s: f64, obstacles: &[Obstacle]) -> Self {
+        let reach_m = speed_m_s * config.horizon_s;
+        let aside_m = |obstacle: &Obstacle| obstacle.radius_m + config.radius_m;
+        let near: Vec<&Obstacle> = (obstacles.iter())
+            .filter(|obstacle| obstacle.place_ned_m.length() < reach_m + 3.0 * aside_m(obstacle))
+            .collect();
+        let eight = |near: &[&Obstacle]| {
+            // What fills up the last eight is infinitely far away.
+            let mut eight = Eight { place: [[1e9; 8]; 3], scale: [1.0; 8] };
+            for (i, obstacle) in near.iter().enumerate() {
+                let place = obstacle.place_ned_m.as_vec3().to_array();
+                (0..3).for_each(|axis| eight.place[axis][i] = place[axis]);
+                eight.scale[i] = aside_m(obstacle).powi(-2) as f32;
+            }
+            eight
+        };
+        Self(near.chunks(8).map(eight).collect())
+    }
+
+    /// The smallest distance from a place to an obstacle, each measured by that at which it is to be passed.
+    fn passage(&self, at: DVec3) -> f64 {
+        let at = at.as_vec3().to_array();
+        let mut least = [FAR * FAR; 8];
+        for Eight { place, scale } in &self.0 {
+            for i in 0..8 {
+                let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| place[axis][i] - at[axis]);
+                let square = (x * x + y * y + z * z) * scale[i];
+                least[i] = if square < least[i] { square } else { least[i] };
+            }
+        }
+        f64::from(least.into_iter().fold(FAR * FAR, f32::min)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(goal_yaw_rad: f64) -> Start {
+        Start {
+            moving: Moving { bank_rad: 0.0, yaw_rad: 0.0, climb_rad: 0.0, speed_m_s: 12.0 },
+            goal: Goal { yaw_rad: goal_yaw_rad, too_low_m: None },
+            last: Command::default(),
+        }
+    }
+
+    fn ball(north_m: f64, east_m: f64, radius_m: f64) -> Obstacle {
+        Obstacle { place_ned_m: DVec3::new(north_m, east_m, 0.0), radius_m }
+    }
+
+    #[test]
+    fn without_obstacles_it_flies_towards_the_goal() {
+        let config = SteerConfig::default();
+        let bank = |yaw: f64| cheapest(&config, &start(yaw), &[]).command.bank_rad;
+        assert!(bank(0.0).abs() < 1e-12 && bank(0.8) > 0.1 && bank(-0.8) < -0.1);
+    }
+
+    #[test]
+    fn it_passes_on_the_side_that_is_free() {
+        let config = SteerConfig::default();
+        for side in [-1.0, 1.0] {
+            // A wall of balls from straight ahead to one side.
+            let wall: Vec<Obstacle> =
+                (0..12).map(|i| ball(18.0, side * (1.5 * f64::from(i) - 2.0), 1.0)).collect();
+            let arc = cheapest(&config, &start(0.0), &wall);
+            assert!(arc.command.bank_rad * side < -0.1, "{arc:?}");
+            let least =
+                |o: &Obstacle| arc.path_ned_m.iter().map(|p| p.distance(o.place_ned_m)).fold(1e9, f64::min);
+            assert!(wall.iter().map(least).fold(1e9, f64::min) > 2.0, "{arc:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_avoided_is_met_late() {
+        let config = SteerConfig::default();
+        let shell: Vec<Obstacle> = (0..2000)
+            .map(|i| {
+                let (azimuth, height) = (0.7 * f64::from(i), f64::from(i) / 1000.0 - 1.0);
+                let level = (1.0 - height * height).sqrt();
+                let bearing = DVec3::new(azimuth.cos() * level, azimuth.sin() * level, height);
+                Obstacle { place_ned_m: bearing * 15.0, radius_m: 1.0 }
+            })
+            .collect();
+        let arc = cheapest(&config, &start(0.0), &shell);
+        let straight =
+            super::arc(&config, &start(0.0), &Near::new(&config, 12.0, &shell), Command::default(), 1.0, 0.0);
+        assert!(arc.danger > 1.0 && arc.danger < straight.danger, "{} {}", arc.danger, straight.danger);
+    }
+
+    #[test]
+    fn the_nearest_passage_is_found_among_any_number() {
+        let config = SteerConfig::default();
+        for count in [0, 1, 7, 8, 9, 33] {
+            let balls: Vec<Obstacle> = (0..count).map(|i| ball(5.0 + f64::from(i), 2.0, 0.3)).collect();
+            let at = DVec3::new(3.0, 1.0, 0.5);
+            let each = balls.iter().map(|o| o.place_ned_m.distance(at) / (o.radius_m + config.radius_m));
+            let expected = each.fold(f64::from(FAR), f64::min);
+            let found = Near::new(&config, 100.0, &balls).passage(at);
+            assert!((found - expected).abs() < 1e-5, "{count}: {found} {expected}");
+        }
+    }
+}

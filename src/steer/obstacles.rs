@@ -1,0 +1,93 @@
+//! What is to be passed, and what of it is remembered after it has left the view.
+
+use std::f64::consts::FRAC_PI_2;
+
+use glam::{DMat3, DVec3};
+
+use super::{DangerMap, SteerConfig};
+use crate::sphere::Grid;
+
+/// A ball that is to be passed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// From the aircraft, along north, east and down, in metres.
+    pub place_ned_m: DVec3,
+    /// Its radius in metres.
+    pub radius_m: f64,
+}
+
+/// What is known to be around: what is in view, and what was.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Obstacles {
+    /// In view first, then those remembered.
+    all: Vec<Obstacle>,
+    in_view: usize,
+    /// When each that is remembered was seen last.
+    seen_s: Vec<f64>,
+}
+
+impl Obstacles {
+    pub(super) fn all(&self) -> &[Obstacle] {
+        &self.all
+    }
+
+    pub(super) fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The aircraft has moved on: all that is known now stands elsewhere relative to it.
+    pub(super) fn moved(&mut self, by_ned_m: DVec3) {
+        self.all.iter_mut().for_each(|obstacle| obstacle.place_ned_m -= by_ned_m);
+    }
+
+    /// Takes what a frame shows. What was known before is remembered where the frame does not look.
+    pub(super) fn see(
+        &mut self,
+        config: &SteerConfig,
+        map: &DangerMap,
+        frame: Frame<'_>,
+        [before_s, now_s]: [f64; 2],
+    ) {
+        let mut remembered = Vec::new();
+        for (i, obstacle) in self.all.iter().enumerate() {
+            let seen_s = if i < self.in_view { before_s } else { self.seen_s[i - self.in_view] };
+            if now_s - seen_s <= config.memory_s && !frame.shows(obstacle) {
+                remembered.push((*obstacle, seen_s));
+            }
+        }
+        self.all.clear();
+        for (at, rate) in map.rates_hz.iter().enumerate() {
+            if !(*rate >= config.least_rate_hz && map.known[at] > 0.0) {
+                continue;
+            }
+            let distance_m = frame.speed_m_s / rate;
+            let bearing = map.grid.bearing(at % map.grid.columns, at / map.grid.columns);
+            self.all.push(Obstacle {
+                place_ned_m: *frame.ned_from_level * bearing * distance_m,
+                radius_m: distance_m * config.half_width_rad.tan(),
+            });
+        }
+        self.in_view = self.all.len();
+        self.all.extend(remembered.iter().map(|(obstacle, _)| *obstacle));
+        self.seen_s = remembered.into_iter().map(|(_, seen_s)| seen_s).collect();
+    }
+}
+
+/// Where a frame looks.
+#[derive(Clone, Copy)]
+pub(super) struct Frame<'a> {
+    pub(super) ned_from_level: &'a DMat3,
+    pub(super) camera_from_ned: &'a DMat3,
+    /// The sectors of the view, in the camera's frame.
+    pub(super) grid: &'a Grid,
+    pub(super) speed_m_s: f64,
+}
+
+impl Frame<'_> {
+    /// Whether an obstacle lies within the view, or so far behind that it does not matter any more.
+    fn shows(&self, obstacle: &Obstacle) -> bool {
+        let place = obstacle.place_ned_m;
+        let ahead = *self.ned_from_level * DVec3::Z;
+        ahead.angle_between(place) > FRAC_PI_2 || self.grid.sector(*self.camera_from_ned * place).is_some()
+    }
+}

@@ -1,0 +1,167 @@
+use glam::DVec3;
+
+use super::arc::{self, Arc};
+use super::observation::{Moving, Observation, View};
+use super::obstacles::{Frame, Obstacle, Obstacles};
+use super::simple::{self, Level};
+use super::{Command, DangerMap, Policy, SteerConfig};
+use crate::error::Result;
+
+/// Finds a command a frame.
+#[derive(Clone, Debug)]
+pub struct Steering {
+    config: SteerConfig,
+    map: DangerMap,
+    obstacles: Obstacles,
+    arc: Option<Arc>,
+    last: Command,
+    last_heading_rad: f64,
+    /// When, and how fast along north, east and down, the aircraft was last observed.
+    before: Option<(f64, DVec3)>,
+    /// The last frame with a cue.
+    seen_s: Option<f64>,
+}
+
+/// Where a command comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The view.
+    Cue,
+    /// There is no cue, and the last command is held.
+    Held,
+    /// There has been no cue for longer: wings level, and the climb that was asked for in that case.
+    Recovery,
+}
+
+/// What is to be flown, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// What is to be flown.
+    pub command: Command,
+    /// Where it comes from.
+    pub source: Source,
+    /// What obstacles add to the cost of the arc that was chosen, against the weight of the danger: 0 is free, 1 is a
+    /// collision at once. None for policies without arcs.
+    pub danger: Option<f64>,
+}
+
+impl Steering {
+    /// Steering of which nothing has been asked yet.
+    ///
+    /// # Errors
+    /// As [`SteerConfig::validate`].
+    pub fn new(config: SteerConfig) -> Result<Self> {
+        config.validate()?;
+        Ok(Self {
+            map: DangerMap::new(&config),
+            obstacles: Obstacles::default(),
+            arc: None,
+            last: Command::default(),
+            last_heading_rad: 0.0,
+            before: None,
+            seen_s: None,
+            config,
+        })
+    }
+
+    /// How the commands come about.
+    pub fn config(&self) -> &SteerConfig {
+        &self.config
+    }
+
+    /// The danger in the directions around, after the last frame with a cue.
+    pub fn map(&self) -> &DangerMap {
+        &self.map
+    }
+
+    /// What is known to be around, after the last frame.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        self.obstacles.all()
+    }
+
+    /// The arc that was chosen at the last frame, by the policy that looks at arcs.
+    pub fn arc(&self) -> Option<&Arc> {
+        self.arc.as_ref()
+    }
+
+    /// Forgets everything that was seen and commanded.
+    pub fn reset(&mut self) {
+        self.map.reset();
+        self.obstacles.reset();
+        (self.arc, self.last, self.last_heading_rad) = (None, Command::default(), 0.0);
+        (self.before, self.seen_s) = (None, None);
+    }
+
+    /// What is to be flown from this frame on.
+    ///
+    /// An observation whose time, attitude or airspeed is not a number, or whose airspeed is not above 0, counts as one
+    /// without a cue.
+    pub fn update(&mut self, o: &Observation<'_>) -> Decision {
+        let sound = o.time_s.is_finite() && o.ned_from_body.is_finite() && o.airspeed_m_s > 0.1;
+        let decision = match o.view.filter(|_| sound && o.airspeed_m_s.is_finite()) {
+            Some(view) => self.steer(o, &view),
+            None => self.without_cue(o.time_s),
+        };
+        self.last = decision.command;
+        decision
+    }
+
+    fn steer(&mut self, o: &Observation<'_>, view: &View<'_>) -> Decision {
+        let moving = Moving::of(&self.config, o);
+        let ned_from_level = moving.ned_from_level();
+        let ned_from_camera = o.ned_from_body * self.config.body_from_camera;
+        let camera_from_ned = ned_from_camera.transpose();
+        let velocity = o.airspeed_m_s
+            * DVec3::new(
+                moving.climb_rad.cos() * moving.yaw_rad.cos(),
+                moving.climb_rad.cos() * moving.yaw_rad.sin(),
+                -moving.climb_rad.sin(),
+            );
+        let before_s = match self.before {
+            Some((before_s, before)) if o.time_s > before_s => {
+                self.obstacles.moved(0.5 * (before + velocity) * (o.time_s - before_s));
+                before_s
+            }
+            _ => o.time_s,
+        };
+        self.before = Some((o.time_s, velocity));
+        self.map.update(&self.config, view.sectors, &(camera_from_ned * ned_from_level));
+        let frame = Frame {
+            ned_from_level: &ned_from_level,
+            camera_from_ned: &camera_from_ned,
+            grid: &view.sectors.grid,
+            speed_m_s: o.airspeed_m_s,
+        };
+        self.obstacles.see(&self.config, &self.map, frame, [before_s, o.time_s]);
+        self.seen_s = Some(o.time_s);
+        let level =
+            Level { from_camera: ned_from_level.transpose() * ned_from_camera, ned_from: ned_from_level };
+        let (config, goal, obstacles) = (&self.config, &o.goal, self.obstacles.all());
+        self.arc = None;
+        let command = match config.policy {
+            Policy::None => simple::none(config, &moving, goal),
+            Policy::Balance => simple::balance(config, &moving, goal, view, &level),
+            Policy::Potential => simple::potential(config, &moving, goal, obstacles, &level),
+            Policy::Heading => simple::heading(config, &moving, goal, obstacles, &mut self.last_heading_rad),
+            Policy::Arc => {
+                let start = arc::Start { moving, goal: *goal, last: self.last };
+                self.arc.insert(arc::cheapest(config, &start, obstacles)).command
+            }
+        };
+        let danger =
+            self.arc.as_ref().map(|arc| arc.danger / self.config.weights.danger.max(f64::MIN_POSITIVE));
+        Decision { command: self.config.limited(command), source: Source::Cue, danger }
+    }
+
+    fn without_cue(&mut self, time_s: f64) -> Decision {
+        self.arc = None;
+        let since = self.seen_s.map_or(f64::INFINITY, |seen_s| time_s - seen_s);
+        let on_invalid = self.config.on_invalid;
+        let (command, source) = if since <= on_invalid.hold_s {
+            (self.last, Source::Held)
+        } else {
+            (Command { bank_rad: 0.0, climb_rad: on_invalid.climb_rad }, Source::Recovery)
+        };
+        Decision { command: self.config.limited(command), source, danger: None }
+    }
+}
