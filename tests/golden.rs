@@ -1,4 +1,4 @@
-//! Every field that OpenCV computed of the made-up pairs, found again on both executors.
+//! Every field that OpenCV computed of the made-up pairs and of a real one, found again on both executors.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod common;
@@ -93,11 +93,28 @@ fn distance(expected: &FlowField, found: &FlowField, bound: Tolerance) -> Differ
     compare(&vec![0.0; distance.data.len()], &distance.data, bound)
 }
 
+/// OpenCV's fields of a crop of a real pair, which are not part of this crate: `$VIEWSPHERE_DATA` says where they lie, or
+/// `../shared/data`.
+fn real_cases() -> Vec<Case> {
+    let Some(folder) = common::data("golden_cv2") else { return Vec::new() };
+    let table = std::fs::read_to_string(folder.join("farneback_params.csv")).unwrap();
+    let case = |line: &str| {
+        // The names of OpenCV's parameters, and its flags in place of the window's shape.
+        let (rest, flags) = line.rsplit_once(',').unwrap();
+        let (name, parameters) = rest.split_once(',').unwrap();
+        let window = if flags == "256" { "gaussian" } else { "box" };
+        self::case(&folder, &format!("{name},rw_crop_0.png,rw_crop_1.png,{parameters},{window},,{name}"))
+    };
+    let cases: Vec<Case> = table.lines().skip(1).map(case).collect();
+    assert_eq!(cases.len(), 7, "farneback_params.csv was read whole");
+    cases
+}
+
 fn every_case(on: On<'_>) {
-    let cases = cases();
-    assert_eq!(cases.len(), 24, "cases.csv was read whole");
+    let made = cases();
+    assert_eq!(made.len(), 24, "cases.csv was read whole");
     let mut problems = Vec::new();
-    for Case { name, config, images, init, expected } in &cases {
+    for Case { name, config, images, init, expected } in made.iter().chain(&real_cases()) {
         let found = flow(on, config, images.each_ref(), init.as_ref());
         let found = distance(expected, &found, BOUND);
         let Difference { mean, p999, max, .. } = found;

@@ -318,6 +318,12 @@ fn an_overlay_shows_every_frame_and_is_whole_or_not_there() {
     };
     run(&folder, &["a.y4m", "--fov-deg", "90", "--quiet", "--overlay", "o.y4m"]).well();
     assert_eq!(frames("o.y4m"), u64::from(FRAMES));
+    write(&folder, "gyro.csv", &gyro_log(|i| Some(still(i))));
+    let args = ["a.y4m", "--fov-deg", "90", "--quiet", "--gyro", "gyro.csv", "--overlay"];
+    run(&folder, &[&args[..], &["plain.y4m"]].concat()).well();
+    run(&folder, &[&args[..], &["level.y4m", "--level", "-5,10"]].concat()).well();
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert!(frames("level.y4m") == u64::from(FRAMES) && bytes("level.y4m") != bytes("plain.y4m"));
     // What was processed before the end of a video that was cut off is there.
     assert_eq!(run(&folder, &["cut.y4m", "--fov-deg", "90", "--overlay", "c.y4m"]).code, Some(2));
     assert_eq!(frames("c.y4m"), u64::from(FRAMES - 1));
@@ -373,6 +379,11 @@ fn what_does_not_belong_together_is_refused() {
             &["a.y4m", fov[0], fov[1], "--gyro", "gyro.csv", "--camera-from-gyro", "1,0,0,0,1,0,0,0,2"],
             &["camera_from_gyro"],
         ),
+        (
+            &["a.y4m", fov[0], fov[1], "--overlay", "o.y4m", "--gyro", "gyro.csv", "--level", "0,95"],
+            &["--level is 95", "-90 to 90 degrees of pitch"],
+        ),
+        (&["a.y4m", fov[0], fov[1], "--overlay", "o.y4m", "--level", "0,0"], &["--gyro"]),
         (&["a.y4m", fov[0], fov[1], "--sectors", "300x1"], &["sectors is 300"]),
         (&["a.y4m", fov[0], fov[1], "--within-s", "0"], &["within_s is 0", "above 0"]),
         (&["a.y4m", fov[0], fov[1], "--fps", "0"], &["0.001 to 1000000"]),

@@ -19,6 +19,7 @@ const OPAQUE: f32 = 0.6;
 const TIMES: [(f64, [u8; 3]); 4] =
     [(1.0, [255, 30, 30]), (2.0, [255, 140, 0]), (4.0, [255, 230, 0]), (8.0, [60, 220, 60])];
 const HEADING: [u8; 3] = [255; 3];
+const HORIZON: [u8; 3] = [0, 220, 255];
 const INVALID: [u8; 3] = [200, 0, 0];
 /// Of pixels that no sector has.
 const NO_SECTOR: u32 = u32::MAX;
@@ -27,13 +28,15 @@ const NO_SECTOR: u32 = u32::MAX;
 ///
 /// The picture is gray. Over it lie the flow as colours ([`colour_wheel`], from the frame before to this one; what does
 /// not move stays gray); a frame around each sector, red if it is met within 1 s, orange within 2 s, yellow within 4 s,
-/// green within 8 s; a box around the threat, with its time; the direction of motion as a cross; the frame's time at the
-/// lower left. A picture whose cue is invalid has a red border, and nothing else is drawn.
+/// green within 8 s; a box around the threat, with its time; the direction of motion as a cross; the horizon, where it is
+/// known ([`Overlay::set_up`]); the frame's time at the lower left. A picture whose cue is invalid has a red border, and
+/// nothing else is drawn.
 #[derive(Debug)]
 pub struct Overlay {
     ideal: Camera,
     picture: Straight,
     sectors: Sectors,
+    up_camera: Option<DVec3>,
     image: Image,
 }
 
@@ -55,7 +58,13 @@ impl Overlay {
         let data = vec![0; 3 * ideal.size.pixels()];
         let image = Image { size: ideal.size, format: PixelFormat::Rgb8, data };
         let picture = Straight::new(raw, ideal);
-        Ok(Self { ideal: *ideal, picture, sectors: Sectors::default(), image })
+        Ok(Self { ideal: *ideal, picture, sectors: Sectors::default(), up_camera: None, image })
+    }
+
+    /// Says which way is up in the camera's frame, at any length, from the frame that is drawn next on; none where that is
+    /// not known, and no horizon is drawn.
+    pub fn set_up(&mut self, up_camera: Option<DVec3>) {
+        self.up_camera = up_camera;
     }
 
     /// The frame with its cue over it, as [`PixelFormat::Rgb8`] in the ideal camera's size. The flow is drawn if the cue
@@ -73,6 +82,9 @@ impl Overlay {
                 self.flow(flow)?;
             }
             self.outline(cue);
+            if let Some(up) = self.up_camera {
+                self.horizon(up);
+            }
             if let Some(threat) = &cue.threat {
                 self.threat(threat, &cue.sectors.grid, scale);
             }
@@ -152,6 +164,27 @@ impl Overlay {
         }
         let above = [a[0], a[1] - 8.0 * scale as f64];
         text(&mut self.image, above, &format!("{:.1}s", threat.time_s), colour, scale);
+    }
+
+    /// What is as high as the camera, far away: the places (x, y, 1) that are square to what is up.
+    fn horizon(&mut self, up: DVec3) {
+        let Camera { size, f_u, f_v, u_0, v_0, .. } = self.ideal;
+        let (a, b) = (up.x / f_u, up.y / f_v);
+        let c = up.z - a * u_0 - b * v_0;
+        let last = [size.width, size.height].map(|side| f64::from(side - 1));
+        // a u + b v + c = 0, from one side of the picture to the other.
+        let steep = a.abs() > b.abs();
+        let ends = match steep {
+            true => [0.0, last[1]].map(|v| [-(b * v + c) / a, v]),
+            false => [0.0, last[0]].map(|u| [u, -(a * u + c) / b]),
+        };
+        // Straight up or down there is none.
+        if ends.as_flattened().iter().all(|end| end.is_finite()) {
+            for shift in [0.0, 1.0] {
+                let moved = ends.map(|[u, v]| if steep { [u + shift, v] } else { [u, v + shift] });
+                line(&mut self.image, moved[0], moved[1], HORIZON);
+            }
+        }
     }
 
     fn cross(&mut self, direction: DVec3, arm: f64) {
@@ -279,6 +312,31 @@ mod tests {
 
     fn camera_pitch() -> f64 {
         Grid::over(&camera(), [4, 3]).unwrap().pitch_rad()[0]
+    }
+
+    #[test]
+    fn the_horizon_is_where_the_camera_is_level() {
+        let row = |up: Option<DVec3>, x: usize| {
+            let gray = vec![90; SIZE.pixels()];
+            let frame = Frame::new(SIZE, PixelFormat::Gray8, &gray).unwrap();
+            let sectors = Sectors::unknown(Grid::over(&camera(), [4, 3]).unwrap());
+            let flow = FlowField { size: SIZE, data: vec![[UNKNOWN_FLOW; 2]; SIZE.pixels()] };
+            let mut overlay = Overlay::new(&camera(), &camera()).unwrap();
+            overlay.set_up(up);
+            let image = overlay.draw(&frame, &cue(&sectors, &flow)).unwrap();
+            let image = image.data.as_chunks::<3>().0.to_vec();
+            (0..150).find(|y| at(&image, x, *y) == HORIZON)
+        };
+        assert_eq!(row(None, 100), None);
+        // The nose is up by atan 0.2, and what is level is 20 px further down; nothing is level right above.
+        assert_eq!(row(Some(DVec3::new(0.0, -1.0, 0.2)), 100), Some(95));
+        assert_eq!(row(Some(DVec3::NEG_Z), 100), None);
+        // The right wing is down, and the horizon rises to the right: by 45 degrees here.
+        let up = Some(DVec3::new(-1.0, -1.0, 0.0));
+        assert_eq!([60, 140].map(|x| row(up, x)), [Some(114), Some(34)]);
+        // The left wing points straight down.
+        assert_eq!([99, 20].map(|x| row(Some(DVec3::X), x)), [None, None]);
+        assert_eq!(row(Some(DVec3::X), 100), Some(0));
     }
 
     #[test]

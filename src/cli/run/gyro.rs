@@ -119,7 +119,7 @@ fn is_sound(sample: &GyroSample) -> bool {
 
 /// Numbers between commas or blanks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Numbers<const N: usize>([f64; N]);
+pub(super) struct Numbers<const N: usize>(pub(super) [f64; N]);
 
 impl<const N: usize> FromStr for Numbers<N> {
     type Err = Error;

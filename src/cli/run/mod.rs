@@ -1,6 +1,7 @@
 //! `viewsphere run`: from frames and a gyro to what will be met, where and when.
 
 mod gyro;
+mod horizon;
 mod intake;
 mod line;
 mod summary;
@@ -12,7 +13,8 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use self::gyro::{Feed, GyroArgs};
+use self::gyro::{Feed, GyroArgs, Numbers};
+use self::horizon::Horizon;
 use self::intake::{Intake, Reader, Taken};
 use self::line::{Line, Timing};
 use self::summary::Summary;
@@ -104,10 +106,14 @@ pub(super) struct Run {
     json: bool,
     /// Write a video of the frames with what was made of them, to this .y4m or to standard output (-): the flow's colours,
     /// each sector's time to contact (red below 1 s, orange 2 s, yellow 4 s, green 8 s), the threat and its time, the
-    /// direction of motion; a red border where the cue is invalid. There is no horizon, as the attitude is not known.
-    /// Frames that --realtime drops are not in it
+    /// direction of motion, with --level the horizon; a red border where the cue is invalid. Frames that --realtime drops
+    /// are not in it
     #[arg(long, value_name = "FILE")]
     overlay: Option<PathBuf>,
+    /// The camera's roll (right side down) and pitch (up) at the first frame, in degrees, for the overlay's horizon: the
+    /// gyro carries it on, up to the first frame whose turn it does not tell
+    #[arg(long, value_name = "ROLL,PITCH", allow_hyphen_values = true, requires_all = ["overlay", "gyro"])]
+    level: Option<Numbers<2>>,
     /// Take frames as a camera would deliver them: those of files at their times, those of a stream as they come. Of those
     /// that come while one is computed the newest is kept, and the others are dropped and counted
     #[arg(long)]
@@ -133,6 +139,7 @@ impl Run {
         input::spared("--overlay", self.overlay.as_deref().filter(|path| !path.is_dir()), read)?;
         let lines = self.json || !self.quiet;
         let target = self.overlay.as_ref().map(|path| video::target(path, lines)).transpose()?;
+        let horizon = Horizon::new(self.level)?;
         let PipelineConfig { engine, alarm, .. } = PipelineConfig::default();
         let mut config = PipelineConfig {
             engine: Config { flow: self.flow.farneback()?, read_flow: target.is_some(), ..engine },
@@ -189,7 +196,7 @@ impl Run {
                 Ok(())
             }
             Some(place) => video::write(&place, |out| {
-                let mut video = Video::new(out, &place, [&camera, &ideal], rate)?;
+                let mut video = Video::new(out, &place, [&camera, &ideal], rate, horizon)?;
                 // What was processed is shown, also where the source fails after it.
                 end = self.frames(&mut flight, first, Some(&mut video));
                 video.finish()

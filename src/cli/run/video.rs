@@ -3,6 +3,7 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use super::horizon::Horizon;
 use super::intake::Taken;
 use crate::camera::Camera;
 use crate::cli::flow::targets::{Place, check_places, place};
@@ -37,6 +38,7 @@ pub(super) fn write(place: &Place, content: impl FnOnce(&mut dyn Write) -> Resul
 /// A video that is being written.
 pub(super) struct Video<'a> {
     overlay: Overlay,
+    horizon: Horizon,
     writer: Y4mWriter<&'a mut dyn Write>,
     failed: Option<Error>,
 }
@@ -47,18 +49,20 @@ impl<'a> Video<'a> {
         place: &Place,
         [raw, ideal]: [&Camera; 2],
         rate: (u32, u32),
+        horizon: Horizon,
     ) -> Result<Self> {
         let path = match place {
             Place::File(path) => path.clone(),
             Place::Stdout | Place::Folder(..) => PathBuf::from("standard output"),
         };
         let writer = Y4mWriter::new(out, path, ideal.size, PixelFormat::Rgb8, rate)?;
-        Ok(Self { overlay: Overlay::new(raw, ideal)?, writer, failed: None })
+        Ok(Self { overlay: Overlay::new(raw, ideal)?, horizon, writer, failed: None })
     }
 
     /// Adds a frame. Returns false if that failed, which [`Video::finish`] then tells.
     pub(super) fn add(&mut self, taken: &Taken, cue: &Cue<'_>) -> bool {
-        let Self { overlay, writer, failed } = self;
+        let Self { overlay, horizon, writer, failed } = self;
+        overlay.set_up(horizon.at(cue));
         let added =
             taken.image.frame().and_then(|frame| writer.write_frame(&overlay.draw(&frame, cue)?.frame()?));
         *failed = added.err();

@@ -69,7 +69,7 @@ impl Default for Farneback {
 }
 
 impl Farneback {
-    /// About a third of the default's work, for slow computers.
+    /// About half the default's work, for slow computers.
     pub fn fast() -> Self {
         Self { iterations: 1, winsize: 13, ..Self::default() }
     }
