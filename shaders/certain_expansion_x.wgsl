@@ -12,7 +12,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> moments: array<vec4f>;          // channels: Σ yᵏ g c for k to 4, Σ yᵏ g c f to 2
-@group(0) @binding(2) var<storage, read> applicability: array<vec4f>;    // zeros up to a whole four, then as of expansion_y
+@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a whole four, then as of expansion_y
 @group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // a pixel each: b_x, b_y, A_xx, A_yy
 @group(0) @binding(4) var<storage, read_write> cross_term: array<vec4f>; // a plane: 2 A_xy
 @group(0) @binding(5) var<storage, read_write> expansion_certainty: array<vec4f>;

@@ -11,7 +11,7 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> weighted: array<vec4f>; // c f
 @group(0) @binding(2) var<storage, read> certainty: array<vec4f>;
-@group(0) @binding(3) var<storage, read> applicability: array<vec4f>; // four samples each of g, y g, y² g, then the next
+@group(0) @binding(3) var<uniform> applicability: array<vec4f, 1024>; // four samples each of g, y g, y² g, then the next
 @group(0) @binding(4) var<storage, read_write> moments: array<vec4f>; // channels: Σ yᵏ g c for k to 4, Σ yᵏ g c f to 2
 
 const SPAN = vec2u(4u, 1u);

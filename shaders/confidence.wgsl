@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> columns: array<vec4f>; // channels: G_xx, G_xy, G_yy, ‖Δb‖², coverage
-@group(0) @binding(2) var<storage, read> window: array<vec4f>;  // as of solve
+@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>;  // as of solve
 @group(0) @binding(3) var<storage, read_write> confidence: array<vec4f>;
 
 const SPAN = vec2u(16u, 1u);
@@ -18,20 +18,16 @@ const SPAN = vec2u(16u, 1u);
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let four = 4u * id.x;
     let y = min(id.y, params.height - 1u);
-    let g_xx = sums(four, y, 0u);
-    let g_xy = sums(four, y, 1u);
-    let g_yy = sums(four, y, 2u);
-    let rest = sums(four, y, 3u);
-    let coverage = sums(four, y, 4u);
-    store(four, id.y, g_xx.a, g_xy.a, g_yy.a, rest.a, coverage.a);
-    store(four + 1u, id.y, g_xx.b, g_xy.b, g_yy.b, rest.b, coverage.b);
-    store(four + 2u, id.y, g_xx.c, g_xy.c, g_yy.c, rest.c, coverage.c);
-    store(four + 3u, id.y, g_xx.d, g_xy.d, g_yy.d, rest.d, coverage.d);
+    let s = averages(four, y);
+    store(four, id.y, s.four_0);
+    store(four + 1u, id.y, s.four_1);
+    store(four + 2u, id.y, s.four_2);
+    store(four + 3u, id.y, s.four_3);
 }
 
-fn store(four: u32, y: u32, g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, rest: vec4f, coverage: vec4f) {
+fn store(four: u32, y: u32, evidence: Five) {
     let stride = (params.width + 3u) / 4u;
-    let value = trusted(g_xx, g_xy, g_yy, rest, coverage);
+    let value = trusted(evidence.a, evidence.b, evidence.c, evidence.d, evidence.e);
     if four < stride && y < params.height {
         confidence[y * stride + four] = repeat_last(value, 4u * four, params.width);
     }

@@ -14,7 +14,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> moments: array<vec4f>;
-@group(0) @binding(2) var<storage, read> applicability: array<vec4f>;    // zeros up to a whole four, then as of expansion_y
+@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a whole four, then as of expansion_y
 @group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // a pixel each: b_x, b_y, A_xx, A_yy
 @group(0) @binding(4) var<storage, read_write> cross_term: array<vec4f>; // a plane: 2 A_xy
 
@@ -22,7 +22,7 @@ struct Params {
 const SPAN = vec2u(8u, 1u);
 const MAX_STEPS = 18u;
 
-@compute @workgroup_size(16, 4)
+@compute @workgroup_size(16, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let stride = (params.width + 3u) / 4u;
     let four = 2u * id.x;

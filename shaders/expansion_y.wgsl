@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> level: array<vec4f>;
-@group(0) @binding(2) var<storage, read> applicability: array<vec4f>; // four samples each of g, y g, y² g, then the next
+@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>; // four samples each of g, y g, y² g, then the next
 @group(0) @binding(3) var<storage, read_write> moments: array<vec4f>; // channels: Σ g f, Σ y g f, Σ y² g f
 
 // Four rows at a time: the window of rows slides in registers, four new rows a step.

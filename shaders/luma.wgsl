@@ -15,23 +15,19 @@ struct Params {
 const WIDE = 1.0 / 257.0;
 
 const SPAN = vec2u(4u, 1u);
+const PIXELS = 4u;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let x0 = id.x * SPAN.x;
     let stride = (params.width + 3u) / 4u;
     let last = params.width - 1u;
-    var four: vec4f;
-    if params.format == 0u {
-        let word = frame[id.y * params.row_words + min(id.x, stride - 1u)];
-        four = repeat_last(vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)), x0, params.width);
-    } else {
-        four = vec4f(
-            pixel(min(x0, last), id.y),
-            pixel(min(x0 + 1u, last), id.y),
-            pixel(min(x0 + 2u, last), id.y),
-            pixel(min(x0 + 3u, last), id.y),
-        );
+    let gray8 = params.format == 0u;
+    let word = frame[id.y * params.row_words + min(id.x, stride - 1u)];
+    var four = repeat_last(vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)), x0, params.width);
+    // A loop and no branch: where shaders run on the CPU, both sides of a branch are gone through.
+    for (var i = 0u; i < min(select(PIXELS, 0u, gray8), PIXELS); i++) {
+        four = select(four, vec4f(pixel(min(x0 + i, last), id.y)), vec4u(0u, 1u, 2u, 3u) == vec4u(i));
     }
     if id.x < stride && id.y < params.height {
         gray[id.y * stride + id.x] = four;

@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> columns: array<vec4f>;
-@group(0) @binding(2) var<storage, read> window: array<vec4f>; // zeros up to a whole four, weights, then zeros
+@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // zeros up to a whole four, weights, then zeros
 @group(0) @binding(3) var<storage, read_write> flow: array<vec4f>;
 
 const SPAN = vec2u(16u, 1u);
@@ -18,19 +18,20 @@ const SPAN = vec2u(16u, 1u);
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let four = 4u * id.x;
     let y = min(id.y, params.height - 1u);
-    let g_xx = sums(four, y, 0u);
-    let g_xy = sums(four, y, 1u);
-    let g_yy = sums(four, y, 2u);
-    let h_x = sums(four, y, 3u);
-    let h_y = sums(four, y, 4u);
-    store(four, id.y, g_xx.a, g_xy.a, g_yy.a, h_x.a, h_y.a);
-    store(four + 1u, id.y, g_xx.b, g_xy.b, g_yy.b, h_x.b, h_y.b);
-    store(four + 2u, id.y, g_xx.c, g_xy.c, g_yy.c, h_x.c, h_y.c);
-    store(four + 3u, id.y, g_xx.d, g_xy.d, g_yy.d, h_x.d, h_y.d);
+    let s = averages(four, y);
+    store(four, id.y, s.four_0);
+    store(four + 1u, id.y, s.four_1);
+    store(four + 2u, id.y, s.four_2);
+    store(four + 3u, id.y, s.four_3);
 }
 
-fn store(four: u32, y: u32, g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, h_x: vec4f, h_y: vec4f) {
+fn store(four: u32, y: u32, equations: Five) {
     let stride = (params.width + 3u) / 4u;
+    let g_xx = equations.a;
+    let g_xy = equations.b;
+    let g_yy = equations.c;
+    let h_x = equations.d;
+    let h_y = equations.e;
     let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + 1e-3);
     let u = repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), 4u * four, params.width);
     let v = repeat_last(known((g_xx * h_y - g_xy * h_x) * scale), 4u * four, params.width);

@@ -9,34 +9,55 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> coarse: array<f32>;
+@group(0) @binding(1) var<storage, read> coarse: array<vec4f>;
 @group(0) @binding(2) var<storage, read> place_x: array<vec2f>; // whole and fractional column to read at
 @group(0) @binding(3) var<storage, read> place_y: array<vec2f>;
-@group(0) @binding(4) var<storage, read_write> flow: array<f32>;
+@group(0) @binding(4) var<storage, read_write> flow: array<vec4f>;
 
-const SPAN = vec2u(1u, 1u);
+const SPAN = vec2u(4u, 1u);
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(32, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let stride = (params.width + 3u) / 4u * 4u;
+    let stride = (params.width + 3u) / 4u;
     if id.x >= stride || id.y >= params.height {
         return;
     }
-    let x = place_x[min(id.x, params.width - 1u)];
+    let x0 = 4u * id.x;
+    let last = params.width - 1u;
+    let a = place_x[x0];
+    let b = place_x[min(x0 + 1u, last)];
+    let c = place_x[min(x0 + 2u, last)];
+    let d = place_x[min(x0 + 3u, last)];
     let y = place_y[id.y];
-    flow[2u * id.y * stride + id.x] = params.scale * sample(x, y, 0u);
-    flow[(2u * id.y + 1u) * stride + id.x] = params.scale * sample(x, y, 1u);
+    // Four neighbours here lie within four neighbours there, which with the next one are within eight.
+    let first = u32(a.x) / 4u;
+    let left = vec4u(u32(a.x), u32(b.x), u32(c.x), u32(d.x)) - 4u * first;
+    let right = min(left + 1u, vec4u(params.in_width - 1u - 4u * first));
+    let fraction = vec4f(a.y, b.y, c.y, d.y);
+    for (var channel = 0u; channel < 2u; channel++) {
+        let here = columns(first, y, channel);
+        let next = columns(first + 1u, y, channel);
+        let mixed = mix(pick(here, next, left), pick(here, next, right), fraction);
+        flow[(2u * id.y + channel) * stride + id.x] = params.scale * mixed;
+    }
 }
 
-fn sample(x: vec2f, y: vec2f, channel: u32) -> f32 {
-    let stride = (params.in_width + 3u) / 4u * 4u;
-    let left = u32(x.x);
-    let right = min(left + 1u, params.in_width - 1u);
-    let above = (2u * u32(y.x) + channel) * stride;
-    let below = (2u * min(u32(y.x) + 1u, params.in_height - 1u) + channel) * stride;
-    return mix(
-        mix(coarse[above + left], coarse[above + right], x.y),
-        mix(coarse[below + left], coarse[below + right], x.y),
-        y.y,
-    );
+// Four columns of the coarser level, between its rows.
+fn columns(four: u32, y: vec2f, channel: u32) -> vec4f {
+    let stride = (params.in_width + 3u) / 4u;
+    let x4 = min(four, stride - 1u);
+    let above = u32(y.x);
+    let below = min(above + 1u, params.in_height - 1u);
+    return mix(coarse[(2u * above + channel) * stride + x4], coarse[(2u * below + channel) * stride + x4], y.y);
+}
+
+// Of eight columns those with the given numbers.
+fn pick(here: vec4f, next: vec4f, number: vec4u) -> vec4f {
+    return select(of_four(here, number), of_four(next, number - 4u), number >= vec4u(4u));
+}
+
+fn of_four(v: vec4f, number: vec4u) -> vec4f {
+    let low = select(vec4f(v.x), vec4f(v.y), number == vec4u(1u));
+    let high = select(vec4f(v.z), vec4f(v.w), number == vec4u(3u));
+    return select(low, high, number >= vec4u(2u));
 }

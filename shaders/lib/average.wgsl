@@ -4,39 +4,65 @@
 
 const MAX_STEPS = 258u;
 
-struct Sums {
+// Four columns of each channel.
+struct Five {
     a: vec4f,
     b: vec4f,
     c: vec4f,
     d: vec4f,
+    e: vec4f,
+}
+
+struct Averages {
+    four_0: Five,
+    four_1: Five,
+    four_2: Five,
+    four_3: Five,
 }
 
 // The averages of sixteen columns from the given four on.
-fn sums(four: u32, y: u32, channel: u32) -> Sums {
+fn averages(four: u32, y: u32) -> Averages {
     let reach = (params.radius + 3u) / 4u;
-    let row = (5u * y + channel) * ((params.width + 3u) / 4u);
     var x = i32(four) - i32(reach);
-    var f0 = column(row, x);
-    var f1 = column(row, x + 1);
-    var f2 = column(row, x + 2);
-    var f3 = column(row, x + 3);
+    var f0 = five(x, y);
+    var f1 = five(x + 1, y);
+    var f2 = five(x + 2, y);
+    var f3 = five(x + 3, y);
     x += 4;
-    var s = Sums();
+    var s = Averages();
     for (var k = 0u; k < min((4u * reach + params.radius + 4u) / 4u, MAX_STEPS); k++) {
-        let f4 = column(row, x);
+        let f4 = five(x, y);
         let w = window[k];
-        s.a += slide(f0, f1, w);
-        s.b += slide(f1, f2, w);
-        s.c += slide(f2, f3, w);
-        s.d += slide(f3, f4, w);
+        s.four_0 = add(s.four_0, f0, f1, w);
+        s.four_1 = add(s.four_1, f1, f2, w);
+        s.four_2 = add(s.four_2, f2, f3, w);
+        s.four_3 = add(s.four_3, f3, f4, w);
         f0 = f1; f1 = f2; f2 = f3; f3 = f4;
         x++;
     }
     return s;
 }
 
+fn add(s: Five, f0: Five, f1: Five, w: vec4f) -> Five {
+    return Five(
+        s.a + slide(f0.a, f1.a, w),
+        s.b + slide(f0.b, f1.b, w),
+        s.c + slide(f0.c, f1.c, w),
+        s.d + slide(f0.d, f1.d, w),
+        s.e + slide(f0.e, f1.e, w),
+    );
+}
+
 // Four columns; past the ends of the row the end's value.
-fn column(row: u32, four: i32) -> vec4f {
-    let last = i32((params.width + 3u) / 4u) - 1;
-    return repeat_ends(columns[row + u32(clamp(four, 0, last))], four, last);
+fn five(four: i32, y: u32) -> Five {
+    let stride = (params.width + 3u) / 4u;
+    let last = i32(stride) - 1;
+    let at = 5u * y * stride + u32(clamp(four, 0, last));
+    return Five(
+        repeat_ends(columns[at], four, last),
+        repeat_ends(columns[at + stride], four, last),
+        repeat_ends(columns[at + 2u * stride], four, last),
+        repeat_ends(columns[at + 3u * stride], four, last),
+        repeat_ends(columns[at + 4u * stride], four, last),
+    );
 }

@@ -95,7 +95,7 @@ impl GpuExecutor {
             .bufs
             .iter()
             .map(|buf| match &buf.content {
-                Content::Constant(values) => storage(gpu, &buf.name, values),
+                Content::Constant(values) => constant(gpu, &buf.name, values),
                 Content::Input | Content::Computed => gpu.device.create_buffer(&BufferDescriptor {
                     label: Some(&buf.name),
                     size: 4 * buf.len as u64,
@@ -243,6 +243,17 @@ fn check_limits(gpu: &Gpu, plan: &Plan) -> Result<()> {
     }
 }
 
+/// A buffer that shaders may bind as storage or as a table: then it ends with zeros.
+fn constant(gpu: &Gpu, label: &str, values: &[f32]) -> Buffer {
+    let mut padded = values.to_vec();
+    padded.resize(values.len().max(reflect::TABLE), 0.0);
+    gpu.device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents: bytemuck::cast_slice(&padded),
+        usage: BufferUsages::STORAGE | BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
+    })
+}
+
 fn storage(gpu: &Gpu, label: &str, values: &[f32]) -> Buffer {
     gpu.device.create_buffer_init(&BufferInitDescriptor {
         label: Some(label),
@@ -283,7 +294,11 @@ pub(super) fn run_alone(
         contents: params,
         usage: BufferUsages::UNIFORM,
     });
-    let inputs: Vec<Buffer> = inputs.iter().map(|values| storage(gpu, "input", values)).collect();
+    let input = |(i, values): (usize, &&[f32])| match pipeline.shape.tables >> i & 1 {
+        1 => constant(gpu, "table", values),
+        _ => storage(gpu, "input", values),
+    };
+    let inputs: Vec<Buffer> = inputs.iter().enumerate().map(input).collect();
     let outputs: Vec<(Buffer, usize)> =
         outputs.iter().map(|values| (storage(gpu, "output", values), values.len())).collect();
     let buffers: Vec<&Buffer> = inputs.iter().chain(outputs.iter().map(|(buffer, _)| buffer)).collect();
