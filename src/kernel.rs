@@ -27,6 +27,32 @@ pub struct Kernel {
     pub cases: fn(Size) -> Vec<Case>,
     /// How far the two sides may differ, and why.
     pub tolerance: Tolerance,
+    /// How far roundings alone may drive the two sides apart, value by value, where that hangs on the values themselves:
+    /// from the same parameters and inputs as the reference, and added to the tolerance.
+    pub rounding: Option<Reference>,
+}
+
+impl Kernel {
+    /// The bounds of one run, one for each output, from its arguments and what the reference made of them.
+    pub fn bounds(&self, params: &[u8], inputs: &[&[f32]], expected: &[&[f32]]) -> Vec<Bound> {
+        let mut own = vec![Vec::new(); expected.len()];
+        if let Some(rounding) = self.rounding {
+            // A bound that is not written is not a number, and takes in nothing.
+            own = expected.iter().map(|values| vec![f32::NAN; values.len()]).collect();
+            rounding(params, inputs, &mut own.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
+        }
+        let Tolerance { absolute, relative, of_largest, .. } = self.tolerance;
+        let bound = |(own, expected): (Vec<f32>, &&[f32])| {
+            let largest = if of_largest > 0.0 { largest(inputs[0]).max(largest(expected)) } else { 0.0 };
+            Bound { absolute: absolute + of_largest * largest, relative, own }
+        };
+        own.into_iter().zip(expected).map(bound).collect()
+    }
+}
+
+/// The largest magnitude, 0 where there is none.
+fn largest(values: &[f32]) -> f32 {
+    values.iter().map(|value| value.abs()).filter(|value| value.is_finite()).fold(0.0, f32::max)
 }
 
 /// The CPU side of a kernel: bytes of the parameters, inputs, outputs.
@@ -67,7 +93,8 @@ pub struct Case {
     pub extent: Size,
 }
 
-/// How far two results may lie apart: `|a − b| ≤ absolute + relative · |reference| + of_largest · largest`.
+/// How far two results may lie apart: `|a − b| ≤ absolute + relative · |reference| + of_largest · largest`, and what
+/// [`Kernel::rounding`] adds.
 ///
 /// `largest` is the largest magnitude in the kernel's first input and in the reference's output: sums that cancel keep
 /// the roundings of their terms.
@@ -83,13 +110,30 @@ pub struct Tolerance {
     pub reason: &'static str,
 }
 
-impl Tolerance {
-    /// The tolerance for one run, with its share of the largest value made part of the absolute one.
-    pub fn over(self, first_input: &[f32], expected: &[f32]) -> Self {
-        let values =
-            first_input.iter().chain(expected).map(|value| value.abs()).filter(|value| value.is_finite());
-        let largest = if self.of_largest > 0.0 { values.fold(0.0, f32::max) } else { 0.0 };
-        Self { absolute: self.absolute + self.of_largest * largest, of_largest: 0.0, ..self }
+/// How far the values of one output may lie off in one run: `absolute + relative · |reference| + own`.
+#[derive(Clone, Debug, Default)]
+pub struct Bound {
+    /// The absolute part, with the tolerance's share of the largest value.
+    pub absolute: f32,
+    /// The part that grows with the reference's magnitude.
+    pub relative: f32,
+    /// Each value's own part, one a value; empty where the kernel's tolerance says all.
+    pub own: Vec<f32>,
+}
+
+impl Bound {
+    /// The bound of one value, for which the reference has `expected`. A value that the own part leaves out has none: not
+    /// a number.
+    pub fn at(&self, index: usize, expected: f32) -> f32 {
+        let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
+        let own = if self.own.is_empty() { 0.0 } else { self.own.get(index).copied().unwrap_or(f32::NAN) };
+        self.absolute + self.relative * magnitude + own
+    }
+
+    /// The bound multiplied by a factor.
+    pub fn times(mut self, factor: f32) -> Self {
+        self.own.iter_mut().for_each(|own| *own *= factor);
+        Self { absolute: factor * self.absolute, relative: factor * self.relative, ..self }
     }
 }
 
@@ -141,13 +185,42 @@ macro_rules! wgsl {
     };
 }
 
-/// Defines `KERNEL`: the shader, the layout and a call of the reference with its arguments unpacked.
+/// Defines `KERNEL`: the shader, the layout and a call of the reference with its arguments unpacked, and one of the
+/// bound's own part, if there is one, which takes the same arguments.
 macro_rules! kernel {
     (
         $name:literal + [$($lib:literal),*],
-        $reference:ident($params:ident; $($input:ident),*) -> ($($output:ident),*),
+        $reference:ident $arguments:tt -> $outputs:tt,
         cases: $cases:expr,
         tolerance: $tolerance:expr $(,)?
+    ) => {
+        $crate::kernel::kernel!(@define $name + [$($lib),*], $reference $arguments -> $outputs, $cases, $tolerance, None);
+    };
+    (
+        $name:literal + [$($lib:literal),*],
+        $reference:ident $arguments:tt -> $outputs:tt,
+        cases: $cases:expr,
+        tolerance: $tolerance:expr,
+        rounding: $rounding:ident $(,)?
+    ) => {
+        $crate::kernel::kernel!(
+            @define $name + [$($lib),*], $reference $arguments -> $outputs, $cases, $tolerance,
+            Some($crate::kernel::kernel!(@call $rounding $arguments -> $outputs))
+        );
+    };
+    (@call $function:ident($params:ident; $($input:ident),*) -> ($($output:ident),*)) => {
+        |params, inputs, outputs| {
+            let params: $params = bytemuck::pod_read_unaligned(params);
+            let ([$($input),*], [$($output),*]) = (inputs, outputs) else {
+                unreachable!("a plan checks the number of buffers when it is built");
+            };
+            $function(&params, $($input,)* $($output),*);
+        }
+    };
+    (
+        @define $name:literal + [$($lib:literal),*],
+        $reference:ident($params:ident; $($input:ident),*) -> ($($output:ident),*),
+        $cases:expr, $tolerance:expr, $rounding:expr
     ) => {
         /// The kernel, for the registry.
         pub static KERNEL: $crate::kernel::Kernel = $crate::kernel::Kernel {
@@ -156,15 +229,12 @@ macro_rules! kernel {
             params: $params::LAYOUT,
             inputs: &[$(stringify!($input)),*],
             outputs: &[$(stringify!($output)),*],
-            reference: |params, inputs, outputs| {
-                let params: $params = bytemuck::pod_read_unaligned(params);
-                let ([$($input),*], [$($output),*]) = (inputs, outputs) else {
-                    unreachable!("a plan checks the number of buffers when it is built");
-                };
-                $reference(&params, $($input,)* $($output),*);
-            },
+            reference: $crate::kernel::kernel!(
+                @call $reference($params; $($input),*) -> ($($output),*)
+            ),
             cases: $cases,
             tolerance: $tolerance,
+            rounding: $rounding,
         };
     };
 }

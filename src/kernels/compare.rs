@@ -1,6 +1,6 @@
 //! Whether two results agree. Both sides of every kernel and both executors of a plan are held against each other here.
 
-use crate::kernel::Tolerance;
+use crate::kernel::Bound;
 
 /// What outputs are filled with before a kernel runs: not a number, and recognisable, so that a value that was never
 /// written is found even where not-a-number is the right answer.
@@ -17,6 +17,8 @@ pub struct Difference {
     pub mean: f64,
     /// Values compared.
     pub count: usize,
+    /// The largest share of its bound that a value takes up: 1 is the bound itself.
+    pub share: f32,
     /// Values beyond the bound.
     pub breaches: usize,
     /// The value that is furthest beyond the bound.
@@ -38,9 +40,10 @@ pub struct Breach {
 
 /// Holds `found` against `expected`, value by value.
 ///
-/// The tolerance is taken as it stands: see [`Tolerance::over`] for its share of the largest value. Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A
-/// [`POISON`] agrees with nothing, and a value that only one side has is beyond every bound.
-pub fn compare(expected: &[f32], found: &[f32], tolerance: Tolerance) -> Difference {
+/// Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A [`POISON`]
+/// agrees with nothing, and a value that only one side has is beyond every bound, as every value is beyond a bound that is
+/// not a number.
+pub fn compare(expected: &[f32], found: &[f32], within: &Bound) -> Difference {
     let count = expected.len().max(found.len());
     let mut result = Difference { count, ..Difference::default() };
     let mut differences = Vec::with_capacity(count);
@@ -49,9 +52,11 @@ pub fn compare(expected: &[f32], found: &[f32], tolerance: Tolerance) -> Differe
         let value = |side: &[f32]| side.get(index).copied().unwrap_or(POISON);
         let (expected, found) = (value(expected), value(found));
         let difference = difference(expected, found);
-        let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
-        let bound = tolerance.absolute + tolerance.relative * magnitude;
-        if !(difference <= bound) {
+        let bound = within.at(index, expected);
+        if difference > 0.0 {
+            result.share = result.share.max(difference / bound);
+        }
+        if !(difference <= bound && difference < f32::INFINITY) {
             result.breaches += 1;
             let excess = difference - bound;
             if result.worst.is_none() || excess > furthest {
@@ -86,10 +91,14 @@ fn difference(expected: f32, found: f32) -> f32 {
 mod tests {
     use super::*;
 
-    const BOUND: Tolerance = Tolerance { absolute: 0.5, relative: 0.1, of_largest: 0.0, reason: "made up" };
+    const BOUND: Bound = Bound { absolute: 0.5, relative: 0.1, own: Vec::new() };
 
     fn breaches(expected: &[f32], found: &[f32]) -> usize {
-        compare(expected, found, BOUND).breaches
+        compare(expected, found, &BOUND).breaches
+    }
+
+    fn breaches_of_own(expected: &[f32], found: &[f32], own: &[f32]) -> usize {
+        compare(expected, found, &Bound { own: own.to_vec(), ..BOUND }).breaches
     }
 
     #[test]
@@ -128,8 +137,40 @@ mod tests {
 
     #[test]
     fn names_the_worst_place() {
-        let found = compare(&[0.0; 4], &[0.6, 9.0, 0.7, 0.0], BOUND);
+        let found = compare(&[0.0; 4], &[0.6, 9.0, 0.7, 0.0], &BOUND);
         let worst = found.worst.expect("three are beyond the bound");
         assert_eq!((worst.index, worst.found, found.breaches, found.max), (1, 9.0, 3, 9.0));
+    }
+
+    #[test]
+    fn gives_each_value_its_own_bound() {
+        assert_eq!(breaches_of_own(&[0.0; 3], &[0.5, 2.5, 1.5], &[0.0, 2.0, 1.0]), 0);
+        assert_eq!(breaches_of_own(&[0.0; 3], &[2.5, 0.5, 1.5], &[0.0, 2.0, 1.0]), 1);
+        assert_eq!(breaches_of_own(&[10.0], &[11.7], &[0.1]), 1);
+        let found = compare(&[0.0; 2], &[0.4, 9.0], &Bound { own: vec![0.0, 9.5], ..BOUND });
+        assert_eq!((found.share, found.breaches), (0.9, 0));
+    }
+
+    #[test]
+    fn refuses_what_is_wrong_in_kind_under_the_widest_bound_of_its_own() {
+        for widest in [f32::MAX, f32::INFINITY] {
+            assert_eq!(breaches_of_own(&[1.0, f32::NAN], &[f32::NAN, 1.0], &[widest; 2]), 2);
+            assert_eq!(breaches_of_own(&[f32::INFINITY], &[f32::NEG_INFINITY], &[widest]), 1);
+            assert_eq!(breaches_of_own(&[1.0, f32::NAN], &[POISON; 2], &[widest; 2]), 2);
+            assert_eq!(breaches_of_own(&[1.0], &[1.0, 2.0], &[widest; 2]), 1);
+        }
+    }
+
+    #[test]
+    fn refuses_everything_within_a_bound_that_is_not_a_number_or_not_there() {
+        assert_eq!(breaches_of_own(&[1.0], &[1.0], &[f32::NAN]), 1);
+        assert_eq!(breaches_of_own(&[1.0, 1.0], &[1.0, 1.0], &[9.0]), 1);
+    }
+
+    #[test]
+    fn asks_for_the_same_bits_where_the_factor_is_0() {
+        let none = Bound { own: vec![f32::MAX; 2], ..BOUND }.times(0.0);
+        assert_eq!(compare(&[1.0, -2.0], &[1.0, -2.0], &none).breaches, 0);
+        assert_eq!(compare(&[1.0, -2.0], &[1.0, -2.000_000_2], &none).breaches, 1);
     }
 }

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::eval::endpoint_error;
 use crate::frame::{Image, Plane};
 use crate::gpu::{Gpu, GpuExecutor};
-use crate::kernel::Tolerance;
+use crate::kernel::Bound;
 use crate::kernels::compare::{Difference, POISON, compare};
 use crate::plan::{BufId, Content, Plan, Shape, Step};
 use crate::sphere::{Heading, Motion};
@@ -40,10 +40,22 @@ pub(super) struct StepFigures {
     pub(super) spread: Spread,
     pub(super) bound_absolute: f32,
     pub(super) bound_relative: f32,
+    /// Of the bounds that values have of their own, where the kernel gives them one.
+    pub(super) bound_own: Option<Own>,
     pub(super) reason: &'static str,
+    /// The largest share of its bound that a value takes up.
+    pub(super) share_of_bound: f32,
     pub(super) values: usize,
     pub(super) breaches: usize,
     pub(super) worst: Option<Worst>,
+}
+
+/// Each value's own part of the bound.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Own {
+    pub(super) median: f32,
+    pub(super) p999: f32,
+    pub(super) max: f32,
 }
 
 /// How far apart two sets of values lie.
@@ -125,7 +137,8 @@ pub(super) fn run(
     let expected = take_flow(sides.cpu.buf(id), plan.flow_size);
     let found = take_flow(&sides.alone.read(id, plan.buf(id).len)?, plan.flow_size);
     let error = endpoint_error(&expected, &found)?;
-    report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, ANY));
+    // Only the figures count here, and no bound.
+    report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, &Bound::default()));
     Ok(report)
 }
 
@@ -135,10 +148,6 @@ fn turn() -> Motion {
     let heading = Heading { direction: DVec3::new(0.08, -0.03, 1.0).normalize(), error_rad: 0.02 };
     Motion { prev_from_cur: DMat3::from_axis_angle(axis, 0.04), heading }
 }
-
-/// For figures alone.
-const ANY: Tolerance =
-    Tolerance { absolute: f32::INFINITY, relative: 0.0, of_largest: 0.0, reason: "only the figures count" };
 
 impl Sides<'_> {
     fn step(&mut self, step: &Step, parity: usize, index: usize, report: &mut Report) -> Result<()> {
@@ -160,11 +169,11 @@ impl Sides<'_> {
 
     /// Holds what a step left on the GPU against what it left on the CPU.
     fn compare(&self, step: &Step, name: String, report: &mut Report) -> Result<()> {
-        for (&(id, shape), &output) in step.outputs.iter().zip(step.kernel.outputs) {
-            let tolerance = self.tolerance(step, &self.cpu.buf(id)[..shape.len()]);
-            let difference = self.difference(&self.corrected, id, shape, tolerance)?;
-            report.steps.push(StepFigures::new(step, name.clone(), output, shape, tolerance, &difference));
-            let alone = self.difference(&self.alone, id, shape, tolerance)?;
+        let outputs = step.outputs.iter().zip(step.kernel.outputs).zip(self.bounds(step));
+        for ((&(id, shape), &output), bound) in outputs {
+            let difference = self.difference(&self.corrected, id, shape, &bound)?;
+            let alone = self.difference(&self.alone, id, shape, &bound)?;
+            report.steps.push(StepFigures::new(step, name.clone(), output, shape, bound, &difference));
             let named = || Some(format!("{} ({name}): {output} by up to {:e}", step.kernel.name, alone.max));
             if alone.max != 0.0 && report.first_difference.is_none() {
                 report.first_difference = named();
@@ -176,18 +185,16 @@ impl Sides<'_> {
         Ok(())
     }
 
-    fn tolerance(&self, step: &Step, expected: &[f32]) -> Tolerance {
-        let own = step.kernel.tolerance.over(self.cpu.buf(step.inputs[0]), expected);
-        Tolerance { absolute: self.factor * own.absolute, relative: self.factor * own.relative, ..own }
+    /// How far each of the step's outputs may lie off.
+    fn bounds(&self, step: &Step) -> Vec<Bound> {
+        let inputs: Vec<&[f32]> = step.inputs.iter().map(|&id| self.cpu.buf(id)).collect();
+        let expected: Vec<&[f32]> =
+            step.outputs.iter().map(|&(id, shape)| &self.cpu.buf(id)[..shape.len()]).collect();
+        let bounds = step.kernel.bounds(&step.params, &inputs, &expected);
+        bounds.into_iter().map(|bound| bound.times(self.factor)).collect()
     }
 
-    fn difference(
-        &self,
-        gpu: &GpuExecutor,
-        id: BufId,
-        shape: Shape,
-        within: Tolerance,
-    ) -> Result<Difference> {
+    fn difference(&self, gpu: &GpuExecutor, id: BufId, shape: Shape, within: &Bound) -> Result<Difference> {
         let found = gpu.read(id, shape.len())?;
         Ok(compare(&self.cpu.buf(id)[..shape.len()], &found, within))
     }
@@ -199,10 +206,9 @@ impl StepFigures {
         name: String,
         output: &'static str,
         shape: Shape,
-        within: Tolerance,
+        within: Bound,
         found: &Difference,
     ) -> Self {
-        let Tolerance { absolute, relative, reason, .. } = within;
         let worst = found.worst.map(|breach| {
             let [column, row, channel] = shape.place(breach.index);
             Worst { column, row, channel, cpu: breach.expected, gpu: breach.found, bound: breach.bound }
@@ -212,13 +218,24 @@ impl StepFigures {
             step: name,
             output,
             spread: Spread::from(found),
-            bound_absolute: absolute,
-            bound_relative: relative,
-            reason,
+            bound_absolute: within.absolute,
+            bound_relative: within.relative,
+            bound_own: Own::of(within.own),
+            reason: step.kernel.tolerance.reason,
+            share_of_bound: found.share,
             values: found.count,
             breaches: found.breaches,
             worst,
         }
+    }
+}
+
+impl Own {
+    fn of(mut bounds: Vec<f32>) -> Option<Self> {
+        bounds.sort_unstable_by(f32::total_cmp);
+        let count = bounds.len();
+        let max = *bounds.last()?;
+        Some(Self { median: bounds[(count - 1) / 2], p999: bounds[(count * 999).div_ceil(1000) - 1], max })
     }
 }
 
@@ -246,14 +263,9 @@ mod tests {
         let mut found = expected.clone();
         found[8 * 2 + 3] = 2.0;
         found[8] = POISON;
-        let figures = StepFigures::new(
-            step,
-            "frame".to_owned(),
-            "gray",
-            shape,
-            step.kernel.tolerance,
-            &compare(&expected, &found, step.kernel.tolerance),
-        );
+        let bound = Bound::default();
+        let difference = compare(&expected, &found, &bound);
+        let figures = StepFigures::new(step, "frame".to_owned(), "gray", shape, bound, &difference);
         assert_eq!((figures.breaches, figures.kernel), (2, "luma"));
         let worst = figures.worst.unwrap();
         assert_eq!((worst.column, worst.row, worst.channel, worst.cpu), (0, 1, 0, 1.0));

@@ -56,7 +56,7 @@ pub(super) fn text(report: &Report, steps: bool) -> String {
 }
 
 fn head(first: &str) -> Vec<String> {
-    [first, "max", "p99.9", "mean", "bound", "breaches"].map(str::to_owned).to_vec()
+    [first, "max", "p99.9", "mean", "bound", "of bound", "breaches"].map(str::to_owned).to_vec()
 }
 
 fn worst_of(first: &StepFigures, all: &[StepFigures]) -> Vec<String> {
@@ -66,15 +66,18 @@ fn worst_of(first: &StepFigures, all: &[StepFigures]) -> Vec<String> {
         p999: same().map(|s| s.spread.p999).fold(0.0, f32::max),
         mean: same().map(|s| s.spread.mean).fold(0.0, f64::max),
     };
-    row(first.kernel.to_owned(), first, spread, same().map(|s| s.breaches).sum())
+    // The bound is that of the step that takes up most of it.
+    let step = same().max_by(|a, b| a.share_of_bound.total_cmp(&b.share_of_bound)).unwrap_or(first);
+    row(first.kernel.to_owned(), step, spread, same().map(|s| s.breaches).sum())
 }
 
 fn row(name: String, step: &StepFigures, spread: Spread, breaches: usize) -> Vec<String> {
-    let bound = match (step.bound_absolute, step.bound_relative) {
-        (0.0, 0.0) => "0".to_owned(),
-        (absolute, 0.0) => format!("{absolute:.1e}"),
-        (0.0, relative) => format!("{relative:.1e}·|x|"),
-        (absolute, relative) => format!("{absolute:.1e} + {relative:.1e}·|x|"),
+    let bound = match (&step.bound_own, step.bound_absolute, step.bound_relative) {
+        (Some(own), ..) => format!("each its own, median {:.1e}", own.median),
+        (None, 0.0, 0.0) => "0".to_owned(),
+        (None, absolute, 0.0) => format!("{absolute:.1e}"),
+        (None, 0.0, relative) => format!("{relative:.1e}·|x|"),
+        (None, absolute, relative) => format!("{absolute:.1e} + {relative:.1e}·|x|"),
     };
     vec![
         name,
@@ -82,6 +85,7 @@ fn row(name: String, step: &StepFigures, spread: Spread, breaches: usize) -> Vec
         format!("{:.2e}", spread.p999),
         format!("{:.2e}", spread.mean),
         bound,
+        format!("{:.0} %", 100.0 * step.share_of_bound),
         breaches.to_string(),
     ]
 }
