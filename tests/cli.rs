@@ -241,7 +241,13 @@ fn the_executors_are_compared_and_a_breach_ends_with_1() {
     let folder = frames();
     let json = run(&folder, &["crosscheck", "--size", "65x47", "--json"]).json();
     assert_eq!((&json["breaches"], &json["width"]), (&0.into(), &65.into()));
-    assert!(json["steps"].as_array().unwrap().len() > 10);
+    let steps = json["steps"].as_array().unwrap();
+    assert!(steps.len() > 10 && steps.iter().all(|step| step["share_of_bound"].as_f64().unwrap() <= 1.0));
+    let own = |step: &&serde_json::Value| step["bound_own"]["median"].as_f64().is_some_and(|px| px < 1e-4);
+    assert!(
+        steps.iter().filter(own).count() > 0
+            && steps.iter().filter(own).all(|step| step["kernel"] == "solve")
+    );
     assert!(json["flow"]["max"].as_f64().unwrap() < 1e-2, "{}", json["flow"]);
     let text = run(&folder, &["crosscheck", "0.png", "1.png", "--steps"]).well().text();
     assert!(text.contains("every value of every step") && text.contains("solve (frame 1, level 0"), "{text}");
