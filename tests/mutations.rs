@@ -7,9 +7,9 @@ use common::sides::compare_sides;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, area, binomial, cells, certain_expansion_x, certain_expansion_y, certain_matrices, compare,
+    ALL, area, binomial, cast, cells, certain_expansion_x, certain_expansion_y, certain_matrices, compare,
     confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices, prime, remap, resample_x,
-    resample_y, residual, sectors, solve, tangent, trust, upsample, weigh, window_y,
+    resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample, weigh, window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -104,6 +104,28 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&remap::KERNEL, "min(at.x + 1u, params.in_width - 1u)", "at.x"),
     (&remap::KERNEL, "min(place, last)", "min(place, last + 1.0)"),
     (&remap::KERNEL, "min(id.x, params.width - 1u)", "id.x"),
+    (&cast::KERNEL, "select(lid, vec4f(), mantle)", "lid"),
+    (&cast::KERNEL, "half.z == 0.0", "false"),
+    (&cast::KERNEL, "slope.z * OFFSET_X", "slope.y * OFFSET_X"),
+    (&cast::KERNEL, "size.x * size.x * a - w * w", "size.x * size.x * a - b * b"),
+    (&cast::KERNEL, "first_cylinder + i", "first_box + i"),
+    (&cast::KERNEL, "x / TILE.x", "x / TILE.y"),
+    (&cast::KERNEL, "(lz > vec4f()) != outside", "lz > vec4f()"),
+    (&shade::KERNEL, "left -= same", "left = vec4f()"),
+    (&shade::KERNEL, "params.share * ", ""),
+    (&shade::KERNEL, "select(0.0, sum, shown)", "sum"),
+    (&shade::KERNEL, "0.25 - octant", "octant"),
+    (&shade::KERNEL, "select(1.0, -1.0, facing > 0.0)", "1.0"),
+    (&shade::KERNEL, "share * share * (3.0 - 2.0 * share)", "share"),
+    (&shade::KERNEL, "select(per_metre, points, around)", "per_metre"),
+    (&shade::KERNEL, "wrapped = steps - points *", "wrapped = steps - 0.0 *"),
+    (&shade::KERNEL, "cells << vec2u(octave)", "cells"),
+    (&shade::KERNEL, "select(-root, root, inside)", "-root"),
+    (&shade::KERNEL, "one > 0.0 && middle.within", "one > 0.0"),
+    (&sensor::KERNEL, "params.noise * f32", "1.1 * params.noise * f32"),
+    (&sensor::KERNEL, "floor(level + 0.5)", "floor(level)"),
+    (&sensor::KERNEL, "seed[1] ^ ", ""),
+    (&sensor::KERNEL, "0.0, 255.0", "0.0, 256.0"),
     (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
 ];
 

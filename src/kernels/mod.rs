@@ -6,7 +6,11 @@
 
 pub mod cases;
 pub mod compare;
+mod facet_cases;
+pub mod facets;
+pub(crate) mod hash;
 mod lens;
+mod octaves;
 mod pair;
 pub(crate) mod rows;
 mod sighting;
@@ -54,4 +58,7 @@ registry!(
     cells,
     looming,
     sectors,
+    cast,
+    shade,
+    sensor,
 );

@@ -4,6 +4,8 @@
 //! a wavelength of one grid spacing and next to nothing beyond, so that an octave of a spacing of two pixels is free of
 //! aliasing; those that are finer are left out, softly, by the size of a pixel on the surface.
 
+use crate::kernels::hash::scrambled;
+
 /// Grid spacing of the coarsest octave, 4 m, by its logarithm to base 2. The finest is 2^10 times finer, 3.9 mm.
 const COARSEST_LOG2_M: i32 = 2;
 const OCTAVES: i32 = 11;
@@ -27,7 +29,7 @@ pub(super) fn gray(uv_m: [f64; 2], period_m: Option<f64>, seed: u32, footprint_l
         let weight = share * share * (3.0 - 2.0 * share);
         sum += AMPLITUDE
             * weight
-            * noise(uv_m, period_m, 2.0_f64.powi(spacing_log2_m), mix(seed ^ mix(octave as u32)));
+            * noise(uv_m, period_m, 2.0_f64.powi(spacing_log2_m), scrambled(seed ^ scrambled(octave as u32)));
     }
     sum
 }
@@ -47,8 +49,8 @@ fn noise([u, v]: [f64; 2], period_m: Option<f64>, spacing_m: f64, seed: u32) -> 
     });
     let mut sum = 0.0;
     for (j, row_weight) in row_weights.into_iter().enumerate() {
-        let seed = mix(seed ^ (row - 1 + j as i64) as u32);
-        let values = columns.map(|column| f64::from(mix(seed ^ column)));
+        let seed = scrambled(seed ^ (row - 1 + j as i64) as u32);
+        let values = columns.map(|column| f64::from(scrambled(seed ^ column)));
         sum +=
             row_weight * column_weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
     }
@@ -63,16 +65,6 @@ fn spline(at: f64) -> (i64, [f64; 4]) {
     let s = 1.0 - t;
     let weights = [s * s * s, (3.0 * t - 6.0) * t * t + 4.0, (3.0 * s - 6.0) * s * s + 4.0, t * t * t];
     (before as i64, weights.map(|weight| weight / 6.0))
-}
-
-/// The finaliser of MurmurHash3, of a number that is not 0.
-fn mix(hash: u32) -> u32 {
-    let mut hash = hash ^ 0x5bd1_e995;
-    hash ^= hash >> 16;
-    hash = hash.wrapping_mul(0x85eb_ca6b);
-    hash ^= hash >> 13;
-    hash = hash.wrapping_mul(0xc2b2_ae35);
-    hash ^ hash >> 16
 }
 
 #[cfg(test)]

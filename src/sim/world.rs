@@ -2,10 +2,7 @@ use glam::DVec3;
 
 use super::Surface;
 use super::texture;
-
-/// Gray level of the sky at the horizon, and how many more there are straight up.
-const HORIZON: f64 = 170.0;
-const ZENITH: f64 = 60.0;
+use crate::kernels::shade::{LIGHT, SKY};
 
 /// Surfaces under a sky.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,8 +64,9 @@ impl World {
 
     /// Gray level, 0 to 255, of what a ray meets, for a pixel that is `pixel_rad` wide.
     pub fn gray(&self, hit: Option<&Hit>, direction_world: DVec3, pixel_rad: f64) -> f64 {
+        let [horizon, zenith] = SKY.map(f64::from);
         let gray = match hit {
-            None => HORIZON + ZENITH * direction_world.dot(self.up_world),
+            None => horizon + zenith * direction_world.dot(self.up_world),
             Some(hit) => {
                 let slant = hit.normal_world.dot(direction_world).abs();
                 // A pixel covers a length of its width across the slant and more along it. Between the two: the longer
@@ -76,7 +74,9 @@ impl World {
                 let across_m = hit.distance_m * pixel_rad;
                 let footprint_log2_m = (across_m.powi(3) / (slant * slant)).log2() / 3.0;
                 let seed = 8 * hit.surface as u32 + hit.face;
-                texture::gray(hit.uv_m, self.surfaces[hit.surface].period_m(hit.face), seed, footprint_log2_m)
+                let period_m = self.surfaces[hit.surface].period_m(hit.face);
+                let light = 1.0 + f64::from(LIGHT) * hit.normal_world.dot(self.up_world);
+                light * texture::gray(hit.uv_m, period_m, seed, footprint_log2_m)
             }
         };
         gray.clamp(0.0, 255.0)
