@@ -25,6 +25,7 @@ use std::time::Duration;
 
 pub use config::{Backend, Config, Extras, OnLoss};
 pub use figures::{Latency, StageTime, Stats, TimeSource};
+pub(crate) use ring::guarded;
 
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Frame, Plane, Size};

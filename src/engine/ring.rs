@@ -112,7 +112,7 @@ pub(super) fn buffer(
 }
 
 /// Makes a stream, and turns what wgpu would panic about into errors.
-pub(super) fn guarded<T>(gpu: &Gpu, plan: &Plan, make: impl FnOnce() -> Result<T>) -> Result<T> {
+pub(crate) fn guarded<T>(gpu: &Gpu, plan: &Plan, make: impl FnOnce() -> Result<T>) -> Result<T> {
     let memory = gpu.device.push_error_scope(ErrorFilter::OutOfMemory);
     let validation = gpu.device.push_error_scope(ErrorFilter::Validation);
     let made = make();

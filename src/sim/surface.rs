@@ -66,6 +66,24 @@ pub(super) enum Shape {
     Cuboid { half_m: DVec3 },
 }
 
+impl Shape {
+    /// Whether any of the shape lies where `normal` · place + `offset_m` is not negative, in its own frame. May be wrong
+    /// in saying yes.
+    pub(super) fn reaches(&self, normal: DVec3, offset_m: f64) -> bool {
+        let n = normal;
+        let beyond_m = match *self {
+            Self::Plane => return true,
+            Self::Rectangle { half_m: [a, b] } => n.x.abs() * a + n.y.abs() * b,
+            Self::Cylinder { radius_m, length_m } => {
+                radius_m * (n.x * n.x + n.y * n.y).sqrt() + (n.z * length_m).max(0.0)
+            }
+            Self::Cuboid { half_m } => n.abs().dot(half_m),
+        };
+        // The margin is for what the normal was rounded by.
+        offset_m + beyond_m >= -1e-9 * (1.0 + beyond_m)
+    }
+}
+
 /// Where a ray meets a shape, in the shape's frame.
 struct Met {
     distance_m: f64,
@@ -171,15 +189,8 @@ impl Surface {
     /// Whether any of the surface lies where `normal_world` · (place − `origin_world`) is not negative. May be wrong in
     /// saying yes.
     pub(super) fn reaches(&self, origin_world: DVec3, normal_world: DVec3) -> bool {
-        let n = self.local_from_world * normal_world;
-        let beyond = match self.shape {
-            Shape::Plane => return true,
-            Shape::Rectangle { half_m: [a, b] } => n.x.abs() * a + n.y.abs() * b,
-            Shape::Cylinder { radius_m, length_m } => radius_m * n.x.hypot(n.y) + (n.z * length_m).max(0.0),
-            Shape::Cuboid { half_m } => n.abs().dot(half_m),
-        };
-        // The margin is for what the normal was rounded by.
-        normal_world.dot(self.origin_world - origin_world) + beyond >= -1e-9 * (1.0 + beyond)
+        let offset_m = normal_world.dot(self.origin_world - origin_world);
+        self.shape.reaches(self.local_from_world * normal_world, offset_m)
     }
 
     /// Where a ray of unit direction meets the surface first.

@@ -1,0 +1,37 @@
+use crate::error::{Error, Result};
+
+/// How a [`Sight`](super::Sight) sees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SightConfig {
+    /// Standard deviation of the noise of a pixel, in gray levels of 255: 0 to 64.
+    pub noise_levels: f64,
+    /// Poses over which an exposure is averaged, 1 to 8: see [`Sight::expose`](super::Sight::expose). 1 is no motion blur.
+    pub blur_poses: usize,
+    /// Surfaces whose nearest point is further away are not shown, metres: above 0, without limit by default.
+    pub range_m: f64,
+}
+
+impl Default for SightConfig {
+    fn default() -> Self {
+        Self { noise_levels: 2.0, blur_poses: 1, range_m: f64::INFINITY }
+    }
+}
+
+impl SightConfig {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first field that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        if !(0.0..=64.0).contains(&self.noise_levels) {
+            return Err(Error::parameter("noise_levels", self.noise_levels, "0 to 64 gray levels"));
+        }
+        if !(1..=8).contains(&self.blur_poses) {
+            return Err(Error::parameter("blur_poses", self.blur_poses, "1 to 8"));
+        }
+        if !(self.range_m > 0.0) {
+            return Err(Error::parameter("range_m", self.range_m, "above 0 m"));
+        }
+        Ok(())
+    }
+}
