@@ -30,6 +30,9 @@ pub struct PipelineConfig {
     pub alarm: Alarm,
     /// Frames further apart make no pair, in seconds, above 0.
     pub max_interval_s: f64,
+    /// A cue is invalid if its flow shows a turn faster than this beside what the gyro tells, in rad/s, above 0. Infinite
+    /// to look at none.
+    pub max_remaining_rad_s: f64,
     /// A cue is invalid if less of the view is trusted, 0 to 1.
     pub least_coverage: f64,
 }
@@ -45,6 +48,7 @@ impl Default for PipelineConfig {
             fields: Fields::default(),
             alarm: Alarm::default(),
             max_interval_s: 0.25,
+            max_remaining_rad_s: f64::INFINITY,
             least_coverage: 0.1,
         }
     }
@@ -75,10 +79,18 @@ impl PipelineConfig {
         if !(self.max_interval_s > 0.0 && self.max_interval_s.is_finite()) {
             return Err(Error::parameter("max_interval_s", self.max_interval_s, "above 0 and finite"));
         }
+        if !(self.max_remaining_rad_s > 0.0) {
+            return Err(Error::parameter("max_remaining_rad_s", self.max_remaining_rad_s, "above 0"));
+        }
         if !(0.0..=1.0).contains(&self.least_coverage) {
             return Err(Error::parameter("least_coverage", self.least_coverage, "0 to 1"));
         }
         Ok(())
+    }
+
+    /// Whether a turn that the flow shows beside the gyro's is looked for.
+    pub(super) fn watches_turn(&self) -> bool {
+        self.gyro.is_some() && self.max_remaining_rad_s.is_finite()
     }
 
     /// The pinhole whose pictures the flow is computed of.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use crate::frame::FlowField;
 use crate::imu::GyroFault;
@@ -21,6 +21,9 @@ pub struct Cue<'a> {
     pub invalid: Option<Invalid>,
     /// How the camera turned since the frame before, where a gyro tells.
     pub prev_from_cur: Option<DMat3>,
+    /// The camera's angular rate that its flow shows beside what the gyro told, rad/s in the camera's frame: a bias. None
+    /// without a gyro, and where too little is seen to tell.
+    pub remaining_turn_rad_s: Option<DVec3>,
     /// Which way the camera moves.
     pub heading: Heading,
     /// What each sector of the view says.
@@ -55,6 +58,19 @@ pub enum Invalid {
     /// The gyro does not say how the camera turned.
     #[error("gyro: {0}")]
     Gyro(GyroFault),
+    /// The picture is that of the frame before, to the last bit: the camera has stopped giving new ones.
+    #[error("the picture is the one before again")]
+    Frozen,
+    /// The flow shows a turn that the gyro has not told.
+    #[error(
+        "the flow turns by {found_rad_s:.3} rad/s beside what the gyro tells, expected at most {most_rad_s}"
+    )]
+    Turn {
+        /// The rate that is left.
+        found_rad_s: f64,
+        /// The highest that is allowed.
+        most_rad_s: f64,
+    },
     /// Too little of the view is trusted.
     #[error("{found:.3} of the view is trusted, expected at least {least}")]
     Coverage {

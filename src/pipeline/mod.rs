@@ -6,7 +6,7 @@ mod cue;
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 pub use config::PipelineConfig;
 pub use cue::{Cue, Invalid};
@@ -16,7 +16,7 @@ use crate::engine::{Backend, Engine, Extras, Ticket};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::imu::{Gyro, GyroSample};
-use crate::sphere::{AlarmFilter, Cells, Eye, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
+use crate::sphere::{self, AlarmFilter, Cells, Eye, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
 
 /// Frames of a camera go in, each with its time, and the gyro's samples; a [`Cue`] a frame comes out.
 ///
@@ -43,7 +43,9 @@ pub struct Pipeline {
 #[derive(Clone, Copy)]
 struct Last {
     frame: u64,
+    /// When its picture was taken, be it shown again.
     time_s: f64,
+    digest: u64,
 }
 
 /// What is known of a frame that is being computed.
@@ -87,7 +89,7 @@ impl Pipeline {
             heading: Heading::UNKNOWN,
             heading_time_s: f64::NAN,
             given: None,
-            headings: HeadingFilter::default(),
+            headings: HeadingFilter::new(config.sphere.heading),
             alarms: AlarmFilter::new(config.alarm, &grid)?,
             config: config.clone(),
         })
@@ -112,7 +114,10 @@ impl Pipeline {
     /// As [`Engine::submit`].
     pub fn submit(&mut self, frame: &Frame<'_>, time_s: f64) -> Result<Ticket> {
         let before = self.last;
+        let digest = digest(frame);
+        let frozen = before.filter(|before| before.digest == digest);
         let (turn, fault) = self.turn(before, time_s);
+        let fault = fault.or(frozen.map(|_| Invalid::Frozen));
         if let Some(Invalid::Interval { .. }) = fault {
             self.engine.reset();
         }
@@ -121,7 +126,9 @@ impl Pipeline {
         let extras = Extras { motion: Some(&motion), ..Extras::default() };
         let submitted = Instant::now();
         let ticket = self.engine.submit_with(frame, &extras)?;
-        self.last = Some(Last { frame: ticket.frame(), time_s });
+        // What comes after is to be held against when the picture was new.
+        let taken_s = frozen.map_or(time_s, |before| before.time_s);
+        self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, digest });
         // What was never waited for is forgotten, oldest first.
         if self.waiting.len() == self.config.engine.in_flight {
             self.waiting.pop_front();
@@ -156,6 +163,7 @@ impl Pipeline {
         let lost = previous != frame.before.map(|before| before.frame);
         let mut invalid = frame.fault.or(lost.then_some(Invalid::Lost));
         let (mut flow, mut fields, mut threat): (_, &[Vec<f32>], _) = (None, &[], None);
+        let mut remaining_turn_rad_s = None;
         let pair = output.and_then(|output| Some((output, output.fields.split_first()?, interval_s?)));
         match pair {
             Some((output, (summed, rest), interval_s)) if !lost => {
@@ -165,6 +173,13 @@ impl Pipeline {
                 let least = config.least_coverage;
                 invalid = invalid
                     .or((!(coverage >= least)).then_some(Invalid::Coverage { found: coverage, least }));
+                if invalid.is_none() && config.watches_turn() {
+                    remaining_turn_rad_s = sphere::remaining_turn_rad_s(sectors);
+                    let found_rad_s = remaining_turn_rad_s.map_or(0.0, DVec3::length);
+                    let most_rad_s = config.max_remaining_rad_s;
+                    invalid =
+                        (!(found_rad_s <= most_rad_s)).then_some(Invalid::Turn { found_rad_s, most_rad_s });
+                }
                 if invalid.is_none() {
                     let found = headings.update(sectors, &frame.turn.unwrap_or(DMat3::IDENTITY));
                     (*heading, *heading_time_s) = (given.unwrap_or(found), frame.time_s);
@@ -182,6 +197,7 @@ impl Pipeline {
             interval_s,
             invalid,
             prev_from_cur: frame.turn,
+            remaining_turn_rad_s,
             heading: *heading,
             sectors,
             threat,
@@ -215,15 +231,12 @@ impl Pipeline {
         }
     }
 
-    /// The heading as the camera sees it at a later time. Over so short a time the aircraft goes straight on.
+    /// The heading as the camera sees it at a later time.
     fn turned_heading(&self, time_s: f64) -> Heading {
         let turn = self.gyro.as_ref().map(|gyro| gyro.prev_from_cur(self.heading_time_s, time_s));
-        match turn {
-            Some(Ok(turn)) => {
-                Heading { direction: turn.transpose() * self.heading.direction, ..self.heading }
-            }
-            None | Some(Err(_)) => self.heading,
-        }
+        let Some(Ok(turn)) = turn else { return self.heading };
+        let cur_from_prev = self.config.sphere.heading.cur_from_prev(&turn);
+        Heading { direction: cur_from_prev * self.heading.direction, ..self.heading }
     }
 
     /// Begins anew: the next frame is a first frame, and nothing is known of the heading.
@@ -254,4 +267,16 @@ impl Pipeline {
     pub fn cells(&self) -> &Cells {
         &self.cells
     }
+}
+
+/// A number by which two pictures that differ are told apart, but for one in 2⁶⁴.
+fn digest(frame: &Frame<'_>) -> u64 {
+    // Fibonacci hashing, eight bytes at a time.
+    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
+    let mixed = |sum: u64, word: u64| (sum ^ word).wrapping_mul(FACTOR).rotate_left(29);
+    (0..frame.size().height).fold(0, |sum, y| {
+        let (words, rest) = frame.row(y).as_chunks::<8>();
+        let sum = words.iter().fold(sum, |sum, word| mixed(sum, u64::from_le_bytes(*word)));
+        rest.iter().fold(sum, |sum, byte| mixed(sum, u64::from(*byte)))
+    })
 }

@@ -1,5 +1,6 @@
 //! How the view sphere is looked at.
 
+use super::HeadingModel;
 use crate::error::{Error, Result};
 
 /// Where the camera's turn is taken out of the flow.
@@ -20,6 +21,8 @@ pub enum Derotation {
 pub struct Sphere {
     /// Where the camera's turn is taken out.
     pub derotation: Derotation,
+    /// How the direction of motion is carried on from frame to frame.
+    pub heading: HeadingModel,
     /// Pixels of the side of the cells that the flow is averaged over, 1 to 64. Farnebäck's errors are alike over about
     /// 8 px, so that smaller cells show no more.
     pub cell: u32,
@@ -44,6 +47,7 @@ impl Default for Sphere {
     fn default() -> Self {
         Self {
             derotation: Derotation::default(),
+            heading: HeadingModel::default(),
             cell: 8,
             step: 4,
             window: 2,

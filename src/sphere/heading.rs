@@ -17,6 +17,27 @@ const FLOOR_RAD: f64 = 0.01;
 /// Sectors whose errors are alike count as one.
 const ALIKE: f64 = 4.0;
 
+/// What stays as it is from frame to frame while the camera turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HeadingModel {
+    /// The direction of motion in the world: the vehicle goes straight on, however the camera is turned or shaken.
+    #[default]
+    Straight,
+    /// The direction of motion in the camera's frame: the vehicle flies the way its nose points, as a fixed wing does in
+    /// its turns, and the camera is fixed to it.
+    Turning,
+}
+
+impl HeadingModel {
+    /// How what was known in the camera's frame at the earlier exposure is turned into that at the later one.
+    pub(crate) fn cur_from_prev(self, prev_from_cur: &DMat3) -> DMat3 {
+        match self {
+            Self::Straight => prev_from_cur.transpose(),
+            Self::Turning => DMat3::IDENTITY,
+        }
+    }
+}
+
 /// Estimates the direction of motion over the last frames.
 ///
 /// The flow F at a bearing p that comes of moving along v lies in the plane of p and v, so v is normal to every `p × F`:
@@ -24,26 +45,27 @@ const ALIKE: f64 = 4.0;
 /// weight. Of the two directions of the axis it is the one that the flow leads away from.
 #[derive(Clone, Debug)]
 pub struct HeadingFilter {
+    model: HeadingModel,
     moment: DMat3,
     /// Sectors that it is made of.
     sectors: f64,
 }
 
-impl Default for HeadingFilter {
-    fn default() -> Self {
-        Self { moment: DMat3::ZERO, sectors: 0.0 }
-    }
-}
-
 impl HeadingFilter {
+    /// A filter that knows nothing yet.
+    pub fn new(model: HeadingModel) -> Self {
+        Self { model, moment: DMat3::ZERO, sectors: 0.0 }
+    }
+
     /// Forgets everything.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self::new(self.model);
     }
 
     /// The direction of motion in the camera's frame at the later exposure, from this pair and those before.
     pub fn update(&mut self, sectors: &Sectors, prev_from_cur: &DMat3) -> Heading {
-        let kept = MEMORY * (prev_from_cur.transpose() * self.moment * *prev_from_cur);
+        let cur_from_prev = self.model.cur_from_prev(prev_from_cur);
+        let kept = MEMORY * (cur_from_prev * self.moment * cur_from_prev.transpose());
         // A sector's say is bounded: however fast something moves by itself, it is one among many.
         let traces = sectors.moments.iter().map(trace);
         let usual = median(traces.filter(|trace| *trace > 0.0)).unwrap_or(1.0);
@@ -133,7 +155,8 @@ mod tests {
     fn the_direction_is_found_also_beside_the_axis_and_backwards() {
         for v in [DVec3::Z, DVec3::new(0.3, -0.1, 0.9), DVec3::new(-0.8, 0.1, 0.2), -DVec3::Z] {
             let v = v.normalize();
-            let found = HeadingFilter::default().update(&sectors(v, false), &DMat3::IDENTITY);
+            let found =
+                HeadingFilter::new(HeadingModel::Straight).update(&sectors(v, false), &DMat3::IDENTITY);
             assert!(found.direction.angle_between(v) < 0.02, "{found:?} for {v}");
             assert!(found.error_rad < 0.05, "{found:?}");
         }
@@ -142,7 +165,7 @@ mod tests {
     #[test]
     fn what_moves_by_itself_does_not_mislead() {
         let v = DVec3::new(0.1, 0.05, 1.0).normalize();
-        let found = HeadingFilter::default().update(&sectors(v, true), &DMat3::IDENTITY);
+        let found = HeadingFilter::new(HeadingModel::Straight).update(&sectors(v, true), &DMat3::IDENTITY);
         assert!(found.direction.angle_between(v) < 0.05, "{found:?}");
     }
 
@@ -150,14 +173,20 @@ mod tests {
     fn without_motion_nothing_is_known() {
         let mut still = sectors(DVec3::Z, false);
         still.moments.iter_mut().for_each(|moment| *moment = DMat3::ZERO);
-        assert_eq!(HeadingFilter::default().update(&still, &DMat3::IDENTITY), Heading::UNKNOWN);
+        assert_eq!(
+            HeadingFilter::new(HeadingModel::Straight).update(&still, &DMat3::IDENTITY),
+            Heading::UNKNOWN
+        );
         still.moments.iter_mut().for_each(|moment| *moment = 1e-8 * DMat3::IDENTITY);
-        assert_eq!(HeadingFilter::default().update(&still, &DMat3::IDENTITY), Heading::UNKNOWN);
+        assert_eq!(
+            HeadingFilter::new(HeadingModel::Straight).update(&still, &DMat3::IDENTITY),
+            Heading::UNKNOWN
+        );
     }
 
     #[test]
     fn what_was_known_turns_with_the_camera() {
-        let mut filter = HeadingFilter::default();
+        let mut filter = HeadingFilter::new(HeadingModel::Straight);
         let v = DVec3::new(0.2, 0.0, 1.0).normalize();
         filter.update(&sectors(v, false), &DMat3::IDENTITY);
         // The camera turns right by 0.2: what was ahead is now to the left.
@@ -167,5 +196,10 @@ mod tests {
         let turned = filter.update(&nothing, &prev_from_cur).direction;
         let expected = prev_from_cur.transpose() * v;
         assert!(turned.angle_between(expected).min(turned.angle_between(-expected)) < 0.02, "{turned}");
+        // An aircraft turns with its camera.
+        let mut filter = HeadingFilter::new(HeadingModel::Turning);
+        filter.update(&sectors(v, false), &DMat3::IDENTITY);
+        let kept = filter.update(&nothing, &prev_from_cur).direction;
+        assert!(kept.angle_between(v).min(kept.angle_between(-v)) < 0.02, "{kept}");
     }
 }

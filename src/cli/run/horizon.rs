@@ -70,6 +70,7 @@ mod tests {
             interval_s,
             invalid: None,
             prev_from_cur,
+            remaining_turn_rad_s: None,
             heading: Heading::UNKNOWN,
             sectors: &sectors,
             threat: None,

@@ -146,7 +146,7 @@ pub(super) fn text(number: u64, cue: &Cue<'_>) -> String {
 }
 
 /// The kinds of reasons, in the order of [`kind`].
-pub(super) const KINDS: [&str; 5] = ["first", "interval", "gyro", "coverage", "lost"];
+pub(super) const KINDS: [&str; 7] = ["first", "interval", "gyro", "coverage", "lost", "frozen", "turn"];
 
 /// Which kind of reason it is.
 pub(super) fn kind(reason: &Invalid) -> usize {
@@ -156,6 +156,8 @@ pub(super) fn kind(reason: &Invalid) -> usize {
         Invalid::Gyro(_) => 2,
         Invalid::Coverage { .. } => 3,
         Invalid::Lost => 4,
+        Invalid::Frozen => 5,
+        Invalid::Turn { .. } => 6,
     }
 }
 

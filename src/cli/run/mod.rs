@@ -42,7 +42,7 @@ use crate::sphere::{Alarm, Sphere};
 /// or run backwards; one in which too little can be seen. Without --gyro the camera's turn stays in the flow.
 ///
 /// With --json-lines a line is an object: frame, time_s, valid, invalid_kind and invalid (null, or first, interval, gyro,
-/// coverage, lost, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or null, threat (azimuth_deg,
+/// coverage, lost, frozen, turn, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or null, threat (azimuth_deg,
 /// elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg from left to right, elevation_deg
 /// from top to bottom, and in lists row by row ttc_s, null where nothing is known or comes nearer, and coverage 0 to 1),
 /// timing (age_ms since the frame was there, latency_ms since it was submitted, dropped in all).
