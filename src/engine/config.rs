@@ -17,6 +17,17 @@ pub enum Backend {
     Cpu,
 }
 
+impl Backend {
+    /// The adapter's name, or `cpu`: unlike [`Engine::adapter`](super::Engine::adapter) the same for any number of cores,
+    /// which do not change the results.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Gpu(gpu) => gpu.adapter().to_string(),
+            Self::Cpu => "cpu".to_owned(),
+        }
+    }
+}
+
 /// What an engine does when the GPU is lost and cannot be brought back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnLoss {

@@ -18,13 +18,16 @@
 //! # }
 //! ```
 
+pub mod campaign;
 mod clearance;
 pub mod course;
+pub mod flight;
 mod random;
 mod rays;
 mod render;
 pub mod scenes;
 mod sight;
+mod sightings;
 mod surface;
 mod texture;
 mod truth;
@@ -36,6 +39,7 @@ pub use random::Random;
 pub use rays::RayTable;
 pub use render::{View, nearness, render};
 pub use sight::{Sight, SightConfig};
+pub use sightings::{ray_grid, sightings};
 pub use surface::{Form, Surface};
 pub use truth::{Motion, Seen, displacement};
 pub use world::{Hit, World};

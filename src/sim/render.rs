@@ -66,7 +66,12 @@ pub fn nearness(world: &World, rays: &RayTable, pose: &Pose) -> Plane {
 }
 
 /// The surfaces that can be seen in a tile.
-fn reached(world: &World, rays: &RayTable, pose: &Pose, [tile_x, tile_y]: [usize; 2]) -> Vec<usize> {
+pub(super) fn reached(
+    world: &World,
+    rays: &RayTable,
+    pose: &Pose,
+    [tile_x, tile_y]: [usize; 2],
+) -> Vec<usize> {
     let sides = rays.sides(tile_x, tile_y).map(|side| pose.world_from_camera * side);
     let within = |i: &usize| sides.iter().all(|side| world.surfaces[*i].reaches(pose.position_world, *side));
     (0..world.surfaces.len()).filter(within).collect()

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{RayTable, World};
+use super::rays::TILE;
+use super::{Hit, RayTable, World};
 use crate::camera::{Camera, Pose};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, UNKNOWN_FLOW};
@@ -56,7 +57,17 @@ impl Seen {
 impl World {
     /// What a camera sees in the direction of a unit vector of its frame.
     pub fn seen(&self, pose: &Pose, bearing: DVec3) -> Seen {
-        let hit = self.hit(pose.position_world, pose.world_from_camera * bearing);
+        self.seen_among(0..self.surfaces.len(), pose, bearing)
+    }
+
+    /// The same if it is known that only some surfaces can be met.
+    pub(super) fn seen_among(
+        &self,
+        surfaces: impl Iterator<Item = usize>,
+        pose: &Pose,
+        bearing: DVec3,
+    ) -> Seen {
+        let hit = self.hit_among(surfaces, pose.position_world, pose.world_from_camera * bearing);
         Seen {
             bearing,
             nearness_per_m: hit.map_or(0.0, |hit| 1.0 / hit.distance_m),
@@ -83,24 +94,65 @@ pub fn displacement(
     if camera.size != size {
         return Err(Error::SizeMismatch { what: "camera".to_owned(), found: camera.size, expected: size });
     }
-    let moved = |i: u32| -> Option<[f32; 2]> {
-        let pixel = [i % size.width, i / size.width];
-        let direction = from.world_from_camera * rays.bearing(pixel[0], pixel[1])?;
-        // The sky is at rest however the camera moves.
-        let (there, distance_m) = match world.hit(from.position_world, direction) {
-            None => (direction, f64::INFINITY),
-            Some(hit) => {
-                let there = from.position_world + hit.distance_m * direction - to.position_world;
-                (there, there.length())
+    let width = size.width as usize;
+    let mut data = vec![[UNKNOWN_FLOW; 2]; size.pixels()];
+    data.par_chunks_mut(width * TILE).enumerate().for_each(|(tile_y, band)| {
+        for tile_x in 0..width.div_ceil(TILE) {
+            let near = reached_from_both(world, rays, from, to.position_world, [tile_x, tile_y]);
+            let first =
+                |origin: DVec3, direction: DVec3| world.hit_among(near.iter().copied(), origin, direction);
+            for (row, flow) in band.chunks_exact_mut(width).enumerate() {
+                for (x, flow) in flow.iter_mut().enumerate().skip(tile_x * TILE).take(TILE) {
+                    let pixel = [x as u32, (tile_y * TILE + row) as u32];
+                    if let Some(there) = goes_to(camera, rays, [from, to], pixel, &first) {
+                        *flow = std::array::from_fn(|c| (there[c] - f64::from(pixel[c])) as f32);
+                    }
+                }
             }
-        };
-        let first = world.hit(to.position_world, there.normalize());
-        if first.is_some_and(|first| first.distance_m < distance_m * (1.0 - HIDDEN)) {
-            return None;
         }
-        let at = camera.project(to.world_from_camera.transpose() * there)?;
-        Some(std::array::from_fn(|c| (at[c] - f64::from(pixel[c])) as f32))
+    });
+    Ok(FlowField { size, data })
+}
+
+/// Where the later camera shows what the earlier one shows at a pixel. `first` is what a ray meets first.
+fn goes_to(
+    camera: &Camera,
+    rays: &RayTable,
+    [from, to]: [&Pose; 2],
+    [x, y]: [u32; 2],
+    first: &impl Fn(DVec3, DVec3) -> Option<Hit>,
+) -> Option<[f64; 2]> {
+    let direction = from.world_from_camera * rays.bearing(x, y)?;
+    // The sky is at rest however the camera moves.
+    let (there, distance_m) = match first(from.position_world, direction) {
+        None => (direction, f64::INFINITY),
+        Some(hit) => {
+            let there = from.position_world + hit.distance_m * direction - to.position_world;
+            (there, there.length())
+        }
     };
-    let data = (0..size.pixels() as u32).into_par_iter().map(|i| moved(i).unwrap_or([UNKNOWN_FLOW; 2]));
-    Ok(FlowField { size, data: data.collect() })
+    let hit = first(to.position_world, there.normalize());
+    if hit.is_some_and(|hit| hit.distance_m < distance_m * (1.0 - HIDDEN)) {
+        return None;
+    }
+    camera.project(to.world_from_camera.transpose() * there)
+}
+
+/// The surfaces that can be seen in a tile, or that can be in the way of what is seen there for who looks from elsewhere.
+fn reached_from_both(
+    world: &World,
+    rays: &RayTable,
+    pose: &Pose,
+    other_world: DVec3,
+    [tile_x, tile_y]: [usize; 2],
+) -> Vec<usize> {
+    // What lies between the other place and one on the inner side of a plane is no further beyond it than the other place.
+    let sides = rays.sides(tile_x, tile_y).map(|side| {
+        let normal = (pose.world_from_camera * side).normalize();
+        let beyond_m = normal.dot(other_world - pose.position_world).min(0.0);
+        (pose.position_world + beyond_m * normal, normal)
+    });
+    let within =
+        |i: &usize| sides.iter().all(|(origin, normal)| world.surfaces[*i].reaches(*origin, *normal));
+    (0..world.surfaces.len()).filter(within).collect()
 }

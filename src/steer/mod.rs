@@ -13,6 +13,7 @@ mod arc;
 mod command;
 mod config;
 mod map;
+mod names;
 mod observation;
 mod obstacles;
 mod simple;

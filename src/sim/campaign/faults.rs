@@ -1,0 +1,94 @@
+use std::fmt;
+use std::str::FromStr;
+
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::sim::flight::{Fault, FaultKind, Sensor};
+
+/// What goes wrong in a flight: none, one fault or several. As text `none`, or faults with `+` between them, such as
+/// `black:2..3+gyro-lost:4`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Faults(pub Vec<Fault>);
+
+impl Faults {
+    /// Checks that each of them can happen: faults of pictures need pictures, and a device must be there to be destroyed.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first that cannot; as [`Fault::validate`].
+    pub fn check(&self, sensor: Sensor, flow: &Backend) -> Result<()> {
+        for fault in &self.0 {
+            fault.validate()?;
+            let (gyro, device) = match fault.kind {
+                FaultKind::GyroLost | FaultKind::GyroBias(_) => (true, false),
+                FaultKind::DeviceLost => (false, true),
+                FaultKind::Frozen | FaultKind::Black | FaultKind::Dropped(_) | FaultKind::NotANumber => {
+                    (false, false)
+                }
+            };
+            if !gyro && sensor != Sensor::Images {
+                let found = format_args!("{fault} with the sensor {sensor}");
+                return Err(Error::parameter("fault", found, "a fault of the gyro, or the sensor images"));
+            }
+            if device && matches!(flow, Backend::Cpu) {
+                let found = format_args!("{fault} on the CPU");
+                return Err(Error::parameter("fault", found, "a GPU, whose device can be destroyed"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a device is destroyed.
+    pub fn destroy(&self) -> bool {
+        self.0.iter().any(|fault| fault.kind == FaultKind::DeviceLost)
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return f.write_str("none");
+        }
+        for (i, fault) in self.0.iter().enumerate() {
+            write!(f, "{}{fault}", if i > 0 { "+" } else { "" })?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Faults {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if text == "none" {
+            return Ok(Self::default());
+        }
+        text.split('+').map(str::parse).collect::<Result<_>>().map(Self)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        for (text, count) in [("none", 0), ("black:2..3", 1), ("dropped=0.2:1+gyro-lost:2..3", 2)] {
+            let faults: Faults = text.parse().unwrap();
+            assert_eq!((faults.to_string().as_str(), faults.0.len()), (text, count));
+        }
+        assert!("none+black".parse::<Faults>().is_err());
+        assert!("".parse::<Faults>().is_err());
+    }
+
+    #[test]
+    fn a_fault_that_cannot_happen_is_refused() {
+        let check = |text: &str, sensor| text.parse::<Faults>().unwrap().check(sensor, &Backend::Cpu);
+        assert!(check("gyro-lost+gyro-bias=5:1..2", Sensor::Flow).is_ok());
+        assert!(check("black+frozen+nan+dropped", Sensor::Images).is_ok());
+        let error = check("gyro-lost+black", Sensor::Depth).unwrap_err().to_string();
+        assert!(error.contains("black:0 with the sensor depth"), "{error}");
+        let error = check("device-lost", Sensor::Images).unwrap_err().to_string();
+        assert!(error.contains("on the CPU"), "{error}");
+    }
+}

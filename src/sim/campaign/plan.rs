@@ -1,0 +1,228 @@
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+use super::{Faults, Job, Setting};
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::sim::CourseKind;
+use crate::sim::flight::{FlightConfig, Sensor};
+use crate::steer::{Danger, Policy};
+
+/// More flights than anyone waits for.
+const MAX_JOBS: usize = 10_000_000;
+
+/// What is flown: every combination of what the lists hold, each with every seed.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// All that the lists do not say.
+    pub base: FlightConfig,
+    /// The worlds' generators.
+    pub worlds: Vec<CourseKind>,
+    /// What is steered by.
+    pub sensors: Vec<Sensor>,
+    /// How commands are found.
+    pub policies: Vec<Policy>,
+    /// What counts as near.
+    pub dangers: Vec<Danger>,
+    /// Airspeeds, m/s.
+    pub speeds_m_s: Vec<f64>,
+    /// Sizes of the pictures, in pixels.
+    pub sizes: Vec<Size>,
+    /// Frames from an exposure until its command acts.
+    pub latencies_frames: Vec<u32>,
+    /// What goes wrong.
+    pub faults: Vec<Faults>,
+    /// From the first seed until before the last.
+    pub seeds: Range<u64>,
+}
+
+/// A share of a campaign's jobs: one of so many, counted from 1. As text `2/4`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: usize,
+    of: usize,
+}
+
+impl Campaign {
+    /// The settings, each once, in the order of the lists.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut all: Vec<Setting> = Vec::new();
+        for &world in &self.worlds {
+            for &sensor in &self.sensors {
+                for &policy in &self.policies {
+                    for &danger in &self.dangers {
+                        for &speed_m_s in &self.speeds_m_s {
+                            for &size in &self.sizes {
+                                for &latency_frames in &self.latencies_frames {
+                                    all.extend(self.faults.iter().map(|faults| Setting {
+                                        world,
+                                        sensor,
+                                        policy,
+                                        danger,
+                                        speed_m_s,
+                                        size,
+                                        latency_frames,
+                                        faults: faults.clone(),
+                                    }));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let mut seen = std::collections::HashSet::new();
+        all.retain(|setting| seen.insert(setting.to_string()));
+        all
+    }
+
+    /// All jobs: the seeds of each setting one after the other, so that every [`Shard`] has its part of each setting.
+    pub fn jobs(&self) -> Vec<Job> {
+        let seeds =
+            |setting: Setting| self.seeds.clone().map(move |seed| Job { setting: setting.clone(), seed });
+        self.settings().into_iter().flat_map(seeds).collect()
+    }
+
+    /// Checks that every setting can be flown, its first seed at least. The backend is that of the flow.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is nothing to fly, or too much; as [`FlightConfig::validate`], [`CourseKind::course`]
+    /// and [`Faults::check`].
+    pub fn validate(&self, flow: &Backend) -> Result<()> {
+        let settings = self.settings();
+        let seeds = usize::try_from(self.seeds.end.saturating_sub(self.seeds.start)).unwrap_or(usize::MAX);
+        let jobs = settings.len().saturating_mul(seeds);
+        if !(1..=MAX_JOBS).contains(&jobs) {
+            return Err(Error::parameter("number of flights", jobs, format_args!("1 to {MAX_JOBS}")));
+        }
+        for world in &self.worlds {
+            world.course(self.seeds.start)?;
+        }
+        for setting in &settings {
+            setting.config(&self.base).validate()?;
+            setting.faults.check(setting.sensor, flow)?;
+        }
+        Ok(())
+    }
+}
+
+impl Shard {
+    /// Everything.
+    pub const ALL: Self = Self { number: 1, of: 1 };
+
+    /// Leaves its part of the jobs: every job is in one shard.
+    pub fn part(self, jobs: Vec<Job>) -> Vec<Job> {
+        jobs.into_iter().skip(self.number - 1).step_by(self.of).collect()
+    }
+}
+
+impl FromStr for Shard {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || Error::parameter("shard", format_args!("{text:?}"), "I/N with I from 1 to N");
+        let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+        let [number, of] = [number, of].map(|part| part.trim().parse::<usize>().ok());
+        match (number, of) {
+            (Some(number), Some(of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err(wrong()),
+        }
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    fn campaign() -> Campaign {
+        Campaign {
+            base: FlightConfig::default(),
+            worlds: vec!["wall".parse().unwrap(), "forest:density=1/64".parse().unwrap()],
+            sensors: vec![Sensor::Depth, Sensor::Images],
+            policies: vec![Policy::Arc, Policy::None],
+            dangers: vec![Danger::Nearness],
+            speeds_m_s: vec![8.0, 12.5],
+            sizes: vec![Size::new(320, 240)],
+            latencies_frames: vec![1],
+            faults: vec![Faults::default(), "gyro-lost:2..3".parse().unwrap()],
+            seeds: 3..10,
+        }
+    }
+
+    fn keys(jobs: &[Job]) -> BTreeSet<String> {
+        jobs.iter().map(Job::key).collect()
+    }
+
+    #[test]
+    fn every_combination_is_a_job_with_its_own_key() {
+        let all = campaign();
+        all.validate(&Backend::Cpu).unwrap();
+        let jobs = all.jobs();
+        assert_eq!(jobs.len(), 2 * 2 * 2 * 2 * 2 * 7);
+        let keys = keys(&jobs);
+        assert_eq!(keys.len(), jobs.len());
+        assert!(keys.contains("wall/depth/arc/nearness/8/320x240/1/none/3"), "{keys:?}");
+        let last = "forest:density=0.015625/images/none/nearness/12.5/320x240/1/gyro-lost:2..3/9";
+        assert!(keys.contains(last), "{keys:?}");
+    }
+
+    #[test]
+    fn what_is_listed_twice_is_flown_once() {
+        let once = campaign();
+        let mut twice = once.clone();
+        twice.worlds.push("forest:density=0.015625".parse().unwrap());
+        twice.speeds_m_s.push(8.0);
+        assert_eq!(twice.jobs(), once.jobs());
+    }
+
+    #[test]
+    fn shards_hold_every_job_once_and_every_setting() {
+        let all = campaign().jobs();
+        for of in [1, 2, 3, 7, 300] {
+            let shards = (1..=of).map(|i| format!("{i}/{of}").parse::<Shard>().unwrap().part(all.clone()));
+            let shards: Vec<Vec<Job>> = shards.collect();
+            assert_eq!(shards.iter().map(Vec::len).sum::<usize>(), all.len());
+            assert_eq!(keys(&shards.concat()), keys(&all));
+            let settings =
+                |jobs: &[Job]| jobs.iter().map(|job| job.setting.to_string()).collect::<BTreeSet<_>>();
+            assert!(of > 7 || shards.iter().all(|shard| settings(shard).len() == 32));
+        }
+    }
+
+    #[test]
+    fn what_is_no_shard_is_an_error() {
+        for text in ["", "1", "0/2", "3/2", "1/0", "a/b", "-1/2", "1/2/3"] {
+            let error = text.parse::<Shard>().unwrap_err().to_string();
+            assert!(error.contains("I/N"), "{error}");
+        }
+        assert_eq!("1/1".parse::<Shard>().unwrap(), Shard::ALL);
+        assert_eq!("2/4".parse::<Shard>().unwrap().to_string(), "2/4");
+    }
+
+    #[test]
+    fn what_cannot_be_flown_is_refused_before() {
+        let refused = |change: fn(&mut Campaign), words: &str| {
+            let mut campaign = campaign();
+            change(&mut campaign);
+            let error = campaign.validate(&Backend::Cpu).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        };
+        refused(|campaign| campaign.seeds = 5..5, "number of flights is 0");
+        refused(|campaign| campaign.seeds = 0..u64::MAX, "number of flights");
+        refused(|campaign| campaign.worlds.clear(), "number of flights is 0");
+        refused(|campaign| campaign.speeds_m_s.push(f64::NAN), "speed_m_s");
+        refused(|campaign| campaign.latencies_frames.push(31), "latency_frames");
+        refused(|campaign| campaign.faults.push("black".parse().unwrap()), "black:0 with the sensor depth");
+    }
+}

@@ -1,0 +1,249 @@
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Ended, JobResult, Table, fingerprint};
+use crate::error::{Error, Result};
+use crate::frame::write_atomic;
+use crate::sim::flight::FlightConfig;
+
+/// What all results of a file have in common: its first line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Configuration {
+    /// This crate's version.
+    viewsphere: String,
+    /// Of what the jobs do not say.
+    fingerprint: String,
+    /// The same for people to read, as far as it can be chosen.
+    settings: String,
+}
+
+/// Results of jobs, each of another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    configuration: Configuration,
+    by_key: BTreeMap<String, JobResult>,
+}
+
+impl Configuration {
+    /// That of flights which begin with `base`. `settings` says what of it was chosen.
+    pub fn new(base: &FlightConfig, settings: String) -> Self {
+        Self { viewsphere: env!("CARGO_PKG_VERSION").to_owned(), fingerprint: fingerprint(base), settings }
+    }
+
+    /// Checks that results of another file belong to these.
+    ///
+    /// # Errors
+    /// [`Error::Format`] with both versions and configurations.
+    pub(super) fn check(&self, path: &Path, found: &Self) -> Result<()> {
+        let name =
+            |c: &Self| format!("that of version {} with {} ({})", c.viewsphere, c.settings, c.fingerprint);
+        if self == found {
+            return Ok(());
+        }
+        Err(Error::format(path, "configuration", name(found), name(self)))
+    }
+}
+
+impl Results {
+    /// None yet.
+    pub fn new(configuration: Configuration) -> Self {
+        Self { configuration, by_key: BTreeMap::new() }
+    }
+
+    /// Reads a file of results. A last line that has no end was being written when something stopped it: it is left out.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Format`] naming the line that is none of a result, or that contradicts one before it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let text = fs::read(path).map_err(|source| Error::io(path, source))?;
+        Ok(Self::parse(path, &text)?.0)
+    }
+
+    /// Reads the content of a file. Also returns how many bytes of it are whole lines.
+    pub(super) fn parse(path: &Path, text: &[u8]) -> Result<(Self, usize)> {
+        let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        let wrong = |number: usize, why: String| {
+            Error::format(path, "a line", format_args!("{number}: {why}"), "a result as campaign writes it")
+        };
+        let mut lines = text[..whole].split_inclusive(|&byte| byte == b'\n').enumerate();
+        let read = |(i, line): (usize, &[u8])| {
+            std::str::from_utf8(line).map(str::to_owned).map_err(|error| wrong(i + 1, error.to_string()))
+        };
+        let first = lines.next().map(read).transpose()?.unwrap_or_default();
+        let configuration =
+            serde_json::from_str(&first).map_err(|error| wrong(1, format!("no configuration: {error}")))?;
+        let mut results = Self::new(configuration);
+        for line in lines {
+            let result = JobResult::from_line(&read(line)?).map_err(|why| wrong(line.0 + 1, why))?;
+            results.add(path, result)?;
+        }
+        Ok((results, whole))
+    }
+
+    /// Adds the result of a job, if there is none of it yet. What was flown takes the place of what failed.
+    ///
+    /// # Errors
+    /// [`Error::Format`] naming the file if the job was flown before, and ended otherwise.
+    pub fn add(&mut self, path: impl AsRef<Path>, result: JobResult) -> Result<()> {
+        match self.by_key.entry(result.job.key()) {
+            Entry::Vacant(entry) => {
+                entry.insert(result);
+            }
+            Entry::Occupied(mut entry) => match (&entry.get().ended, &result.ended) {
+                (Ended::Failed(_), _) => {
+                    entry.insert(result);
+                }
+                (_, Ended::Failed(_)) => (),
+                _ => {
+                    let (before, now) = (line(path.as_ref(), entry.get())?, line(path.as_ref(), &result)?);
+                    if before != now {
+                        let expected = format!("the one that is there already: {before}");
+                        return Err(Error::format(path, "the result of a job", now, expected));
+                    }
+                }
+            },
+        }
+        Ok(())
+    }
+
+    /// Adds all results of a file.
+    ///
+    /// # Errors
+    /// As [`Results::add`]; [`Error::Format`] if they are of another version or configuration.
+    pub fn merge(&mut self, path: impl AsRef<Path>, other: Self) -> Result<()> {
+        let path = path.as_ref();
+        self.configuration.check(path, &other.configuration)?;
+        other.by_key.into_values().try_for_each(|result| self.add(path, result))
+    }
+
+    /// What they have in common.
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// Whether a job was flown. One that failed is to be tried again.
+    pub fn has_flown(&self, key: &str) -> bool {
+        self.by_key.get(key).is_some_and(|result| matches!(result.ended, Ended::Flown(_)))
+    }
+
+    /// All of them, in the order of [`Job::order`](super::Job::order).
+    pub fn sorted(&self) -> Vec<&JobResult> {
+        let mut all: Vec<&JobResult> = self.by_key.values().collect();
+        all.sort_by(|a, b| a.job.order(&b.job));
+        all
+    }
+
+    /// What they say together.
+    pub fn table(&self) -> Table {
+        Table::of(&self.sorted())
+    }
+
+    /// Writes them in their order, so that the same results are the same file.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        write_atomic(path, |out| {
+            let mut put = |text: String| writeln!(out, "{text}").map_err(|source| Error::io(path, source));
+            put(json(path, &self.configuration)?)?;
+            self.sorted().into_iter().try_for_each(|result| put(line(path, result)?))
+        })
+    }
+}
+
+/// A result's line, for a file.
+pub(super) fn line(path: &Path, result: &JobResult) -> Result<String> {
+    result.to_line().map_err(|error| Error::io(path, io::Error::other(error)))
+}
+
+/// Anything as a line, for a file.
+pub(super) fn json(path: &Path, value: &impl Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(|error| Error::io(path, io::Error::other(error)))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::testing::{failed, flown};
+    use super::*;
+    use crate::sim::flight::Outcome;
+
+    fn results(all: impl IntoIterator<Item = JobResult>) -> Results {
+        let mut results = Results::new(Configuration::new(&FlightConfig::default(), "defaults".to_owned()));
+        all.into_iter().for_each(|result| results.add("a", result).unwrap());
+        results
+    }
+
+    fn reached(world: &str, seed: u64) -> JobResult {
+        flown(world, seed, Outcome::Reached, seed as f64 / 3.0)
+    }
+
+    #[test]
+    fn the_same_results_are_the_same_file_in_whatever_order_they_come() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let all: Vec<JobResult> =
+            (0..12).map(|seed| reached(["wall", "city"][seed as usize % 2], seed)).collect();
+        results(all.clone()).write(path("a")).unwrap();
+        let mut merged = results(all[7..].iter().cloned());
+        merged.merge("b", results(all[..9].iter().rev().cloned())).unwrap();
+        merged.write(path("b")).unwrap();
+        let [a, b] = ["a", "b"].map(|name| fs::read_to_string(path(name)).unwrap());
+        assert_eq!(a, b);
+        assert_eq!(Results::read(path("a")).unwrap(), results(all));
+    }
+
+    #[test]
+    fn what_was_flown_takes_the_place_of_what_failed() {
+        for all in [[failed("wall", 1), reached("wall", 1)], [reached("wall", 1), failed("wall", 1)]] {
+            let results = results(all);
+            assert!(results.has_flown(&reached("wall", 1).job.key()));
+            assert_eq!(results.sorted(), [&reached("wall", 1)]);
+        }
+        assert!(!results([failed("wall", 1)]).has_flown(&failed("wall", 1).job.key()));
+    }
+
+    #[test]
+    fn results_that_contradict_each_other_are_refused() {
+        let mut one = results([reached("wall", 1)]);
+        one.merge("b", results([reached("wall", 1)])).unwrap();
+        let other = results([flown("wall", 1, Outcome::Crashed, 0.5)]);
+        let error = one.merge("b", other).unwrap_err().to_string();
+        assert!(error.contains("crashed") && error.contains("reached"), "{error}");
+    }
+
+    #[test]
+    fn results_of_another_configuration_are_refused() {
+        let mut one = results([]);
+        let base = FlightConfig { radius_m: 0.7, ..FlightConfig::default() };
+        let other = Results::new(Configuration::new(&base, "a large plane".to_owned()));
+        let error = one.merge("b", other).unwrap_err().to_string();
+        assert!(error.starts_with("b: configuration") && error.contains("a large plane"), "{error}");
+    }
+
+    #[test]
+    fn a_line_that_is_no_result_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        results([reached("wall", 1), reached("wall", 2)]).write(&path).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        for (wrong, words) in [
+            (text.replacen("\"seed\":2", "\"seed\":x", 1), "line is 3"),
+            (text.replacen("viewsphere", "v", 1), "line is 1"),
+            (String::new(), "line is 1"),
+            ("{\"viewsphere\"".to_owned(), "line is 1"),
+        ] {
+            fs::write(&path, wrong).unwrap();
+            let error = Results::read(&path).unwrap_err().to_string();
+            assert!(error.contains(words) && !error.contains('\n'), "{error}");
+        }
+    }
+}

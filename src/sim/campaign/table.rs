@@ -1,0 +1,270 @@
+use std::fmt::Write;
+
+use super::statistics::{mean, quantile, wilson};
+use super::{Ended, JobResult, Setting};
+use crate::sim::flight::{Outcome, Summary};
+
+/// What a campaign says: a row for each setting, in the order of [`Setting::order`].
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+pub struct Table {
+    /// What computed the flow, where there were pictures.
+    pub adapters: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+/// The flights of a setting together. What cannot be said of them is none.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+pub struct Row {
+    /// The world's generator.
+    pub world: String,
+    /// What was steered by.
+    pub sensor: String,
+    /// How commands were found.
+    pub policy: String,
+    /// What counted as near.
+    pub danger: String,
+    /// Airspeed, m/s.
+    pub speed_m_s: f64,
+    /// Size of the pictures.
+    pub size: String,
+    /// Frames from an exposure until its command acted.
+    pub latency_frames: u32,
+    /// What went wrong.
+    pub faults: String,
+    /// Flights that were flown.
+    pub flights: usize,
+    /// Jobs that failed with an error; they are in no other figure.
+    pub failed: usize,
+    /// Flights that reached the goal.
+    pub reached: usize,
+    /// Flights that came too near to something.
+    pub crashed: usize,
+    /// Flights that left the band of altitudes.
+    pub left_band: usize,
+    /// Flights that took too long.
+    pub timed_out: usize,
+    /// The share that reached the goal, 0 to 1.
+    pub success: Option<f64>,
+    /// Its 95 % interval, as [`wilson`] has it: the lower end.
+    pub success_low: f64,
+    /// The upper end.
+    pub success_high: f64,
+    /// The least clearance of a flight, metres: its mean over the flights.
+    pub least_clearance_mean_m: Option<f64>,
+    /// The same, the value that 5 % of the flights lie below.
+    pub least_clearance_p5_m: Option<f64>,
+    /// Progress a metre flown, 0 to 1: the mean over the flights that reached the goal.
+    pub efficiency: Option<f64>,
+    /// All way flown a crash, metres; none where there was no crash.
+    pub between_crashes_m: Option<f64>,
+    /// All way flown, metres.
+    pub path_m: f64,
+    /// Root mean square of the roll rate over the time of all flights, rad/s.
+    pub roll_rate_rad_s: Option<f64>,
+    /// The share of the time without a cue, 0 to 1.
+    pub invalid: Option<f64>,
+    /// Offset to the right of the middle of the way, metres: its mean over the flights. None where the way has no middle.
+    pub offset_mean_m: Option<f64>,
+    /// The offset's standard deviation in a flight, metres: its mean over the flights.
+    pub offset_std_m: Option<f64>,
+}
+
+impl Table {
+    /// The table of all results.
+    pub fn of(results: &[&JobResult]) -> Self {
+        let mut sorted = results.to_vec();
+        sorted.sort_by(|a, b| a.job.order(&b.job));
+        let mut adapters: Vec<String> = sorted.iter().filter_map(|result| result.adapter.clone()).collect();
+        adapters.sort();
+        adapters.dedup();
+        let rows = sorted.chunk_by(|a, b| a.job.setting == b.job.setting).map(Row::of).collect();
+        Self { adapters, rows }
+    }
+
+    /// The rows as comma-separated values under their names. What is none is empty.
+    pub fn csv(&self) -> String {
+        let mut text = COLUMNS.join(",") + "\n";
+        for row in &self.rows {
+            let some = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+            let cells = [
+                row.world.clone(),
+                row.sensor.clone(),
+                row.policy.clone(),
+                row.danger.clone(),
+                row.speed_m_s.to_string(),
+                row.size.clone(),
+                row.latency_frames.to_string(),
+                row.faults.clone(),
+                row.flights.to_string(),
+                row.failed.to_string(),
+                row.reached.to_string(),
+                row.crashed.to_string(),
+                row.left_band.to_string(),
+                row.timed_out.to_string(),
+                some(row.success),
+                row.success_low.to_string(),
+                row.success_high.to_string(),
+                some(row.least_clearance_mean_m),
+                some(row.least_clearance_p5_m),
+                some(row.efficiency),
+                some(row.between_crashes_m),
+                row.path_m.to_string(),
+                some(row.roll_rate_rad_s),
+                some(row.invalid),
+                some(row.offset_mean_m),
+                some(row.offset_std_m),
+            ];
+            // A string takes everything.
+            let _ = writeln!(text, "{}", cells.join(","));
+        }
+        text
+    }
+}
+
+/// The columns of [`Table::csv`]: the fields of a [`Row`].
+const COLUMNS: [&str; 26] = [
+    "world",
+    "sensor",
+    "policy",
+    "danger",
+    "speed_m_s",
+    "size",
+    "latency_frames",
+    "faults",
+    "flights",
+    "failed",
+    "reached",
+    "crashed",
+    "left_band",
+    "timed_out",
+    "success",
+    "success_low",
+    "success_high",
+    "least_clearance_mean_m",
+    "least_clearance_p5_m",
+    "efficiency",
+    "between_crashes_m",
+    "path_m",
+    "roll_rate_rad_s",
+    "invalid",
+    "offset_mean_m",
+    "offset_std_m",
+];
+
+impl Row {
+    /// The row of results of one setting, of which there is at least one.
+    fn of(results: &[&JobResult]) -> Self {
+        let flown: Vec<&Summary> = (results.iter())
+            .filter_map(|result| match &result.ended {
+                Ended::Flown(summary) => Some(summary),
+                Ended::Failed(_) => None,
+            })
+            .collect();
+        let count = |outcome| flown.iter().filter(|summary| summary.outcome == outcome).count();
+        let all = |value: fn(&Summary) -> f64| flown.iter().map(|summary| value(summary)).collect::<Vec<_>>();
+        let [reached, crashed] = [Outcome::Reached, Outcome::Crashed].map(count);
+        let [success_low, success_high] = wilson(reached, flown.len());
+        let path_m: f64 = all(|summary| summary.path_m).iter().sum();
+        let time_s: f64 = all(|summary| summary.time_s).iter().sum();
+        // A flight counts by its time, as its frames would.
+        let over_time = |value: fn(&Summary) -> f64| {
+            let sum: f64 = flown.iter().map(|summary| value(summary) * summary.time_s).sum();
+            (time_s > 0.0).then(|| sum / time_s)
+        };
+        let clearances_m = all(|summary| summary.least_clearance_m);
+        let arrived = flown.iter().filter(|summary| summary.outcome == Outcome::Reached);
+        let offset = |which: usize| {
+            mean(&flown.iter().filter_map(|summary| Some(summary.offset_m?[which])).collect::<Vec<_>>())
+        };
+        let first = &results[0].job.setting;
+        let Setting { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = first;
+        Self {
+            world: world.to_string(),
+            sensor: sensor.to_string(),
+            policy: policy.to_string(),
+            danger: danger.to_string(),
+            speed_m_s: *speed_m_s,
+            size: first.size_text(),
+            latency_frames: *latency_frames,
+            faults: faults.to_string(),
+            flights: flown.len(),
+            failed: results.len() - flown.len(),
+            reached,
+            crashed,
+            left_band: count(Outcome::LeftBand),
+            timed_out: count(Outcome::TimedOut),
+            success: (!flown.is_empty()).then(|| reached as f64 / flown.len() as f64),
+            success_low,
+            success_high,
+            least_clearance_mean_m: mean(&clearances_m),
+            least_clearance_p5_m: quantile(&clearances_m, 0.05),
+            efficiency: mean(&arrived.map(|summary| summary.efficiency()).collect::<Vec<_>>()),
+            between_crashes_m: (crashed > 0).then(|| path_m / crashed as f64),
+            path_m,
+            roll_rate_rad_s: over_time(|summary| summary.roll_rate_rad_s.powi(2)).map(f64::sqrt),
+            invalid: over_time(|summary| summary.invalid),
+            offset_mean_m: offset(1),
+            offset_std_m: offset(0),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::testing::{failed, flown};
+    use super::*;
+
+    #[test]
+    fn a_row_adds_up_by_hand() {
+        let results = [
+            flown("wall", 0, Outcome::Reached, 2.0),
+            flown("wall", 1, Outcome::Crashed, 0.5),
+            failed("wall", 2),
+            flown("forest", 0, Outcome::TimedOut, 1.0),
+        ];
+        let table = Table::of(&results.iter().collect::<Vec<_>>());
+        assert_eq!(table.rows.iter().map(|row| row.world.as_str()).collect::<Vec<_>>(), ["forest", "wall"]);
+        let wall = &table.rows[1];
+        assert_eq!((wall.flights, wall.failed, wall.reached, wall.crashed), (2, 1, 1, 1));
+        assert_eq!((wall.left_band, wall.timed_out), (0, 0));
+        assert_eq!(wall.success, Some(0.5));
+        assert_eq!([wall.success_low, wall.success_high], wilson(1, 2));
+        assert_eq!(wall.least_clearance_mean_m, Some(1.25));
+        assert_eq!(wall.least_clearance_p5_m, Some(0.5));
+        // Each flies 100 m towards the goal on a way of 125 m, in 10 s, and rolls by 0.3 rad/s.
+        assert_eq!(wall.efficiency, Some(0.8));
+        assert_eq!((wall.path_m, wall.between_crashes_m), (250.0, Some(250.0)));
+        assert!((wall.roll_rate_rad_s.unwrap() - 0.3).abs() < 1e-12);
+        assert!((wall.invalid.unwrap() - 0.1).abs() < 1e-12);
+        let forest = &table.rows[0];
+        assert_eq!((forest.timed_out, forest.efficiency, forest.between_crashes_m), (1, None, None));
+    }
+
+    #[test]
+    fn the_order_of_the_results_does_not_matter() {
+        let mut results: Vec<JobResult> =
+            (0..7).map(|seed| flown("wall", seed, Outcome::Reached, seed as f64)).collect();
+        results.push(flown("city", 3, Outcome::Crashed, 0.1));
+        let table = Table::of(&results.iter().collect::<Vec<_>>());
+        results.reverse();
+        assert_eq!(table, Table::of(&results.iter().collect::<Vec<_>>()));
+    }
+
+    #[test]
+    fn csv_has_a_cell_for_every_column() {
+        let results = [failed("wall", 2), flown("forest", 0, Outcome::TimedOut, 1.0)];
+        let csv = Table::of(&results.iter().collect::<Vec<_>>()).csv();
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines.iter().all(|line| line.split(',').count() == COLUMNS.len()), "{csv}");
+        assert!(lines[1].starts_with("forest,depth,arc,nearness,12,320x240,1,none,1,0,0,0,0,1,0,"), "{csv}");
+        assert!(
+            lines[2].starts_with("wall,depth,arc,nearness,12,320x240,1,none,0,1,0,0,0,0,,0,1,,"),
+            "{csv}"
+        );
+    }
+}

@@ -1,0 +1,101 @@
+//! What a camera and a pipeline say.
+
+use std::time::Instant;
+
+use super::config::FlightConfig;
+use super::eye::{Moment, Said};
+use super::fault::{Fault, FaultKind};
+use super::record::Cost;
+use crate::camera::Camera;
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::frame::{Image, PixelFormat};
+use crate::imu::GyroSample;
+use crate::pipeline::Pipeline;
+use crate::sim::Sight;
+use crate::sim::{Random, World};
+use crate::steer::View;
+
+/// Draws pictures and has a pipeline look at them.
+pub(super) struct CameraEye {
+    sight: Sight,
+    pipeline: Pipeline,
+    image: Image,
+    random: Random,
+    seed: u64,
+    destroyed: bool,
+}
+
+impl CameraEye {
+    pub(super) fn new(
+        [sight, flow]: [Backend; 2],
+        world: &World,
+        config: &FlightConfig,
+        mut random: Random,
+    ) -> Result<Self> {
+        let sight = Sight::new(sight, &config.camera, world, &config.sight)?;
+        let pipeline = Pipeline::new(flow, &config.camera, &config.pipeline)?;
+        let size = config.camera.size;
+        let image = Image { size, format: PixelFormat::Gray8, data: vec![0; size.pixels()] };
+        let seed = random.next_u64();
+        Ok(Self { sight, pipeline, image, random, seed, destroyed: false })
+    }
+
+    pub(super) fn push_gyro(&mut self, sample: GyroSample) {
+        self.pipeline.push_gyro(sample);
+    }
+
+    /// The pinhole whose pictures the flow is computed of.
+    pub(super) fn ideal(&self) -> &Camera {
+        self.pipeline.ideal()
+    }
+
+    /// Looks at the world. The picture is there even if the pipeline says nothing of it.
+    pub(super) fn look(&mut self, at: &Moment<'_>, faults: &[Fault], cost: &mut Cost) -> Result<Said<'_>> {
+        let acts = |kind: FaultKind| faults.iter().any(|fault| fault.kind == kind && fault.acts(at.time_s));
+        let begun = Instant::now();
+        if acts(FaultKind::Black) {
+            self.image.data.fill(0);
+        } else if !acts(FaultKind::Frozen) {
+            let seen = self.sight.look(&at.pose, self.seed.wrapping_add(at.frame))?;
+            self.image.data.copy_from_slice(&seen.data);
+        }
+        cost.sight = begun.elapsed();
+        let shares =
+            faults.iter().filter(|fault| fault.acts(at.time_s)).filter_map(|fault| match fault.kind {
+                FaultKind::Dropped(share) => Some(share),
+                _ => None,
+            });
+        let dropped = shares.fold(0.0, f64::max);
+        if dropped > 0.0 && self.random.uniform() < dropped {
+            let invalid = Some("the frame was dropped".to_owned());
+            return Ok(Said { image: Some(&self.image), invalid, ..Said::default() });
+        }
+        if acts(FaultKind::DeviceLost) && !self.destroyed {
+            self.destroyed = true;
+            if let Some(gpu) = self.pipeline.engine().gpu() {
+                gpu.device().destroy();
+            }
+        }
+        let time_s = if acts(FaultKind::NotANumber) { f64::NAN } else { at.time_s };
+        self.pipeline.set_heading(at.heading);
+        let begun = Instant::now();
+        let cue = match self.pipeline.process(&self.image.frame()?, time_s) {
+            Ok(cue) => Ok(cue),
+            // What the driver says of it differs from run to run.
+            Err(Error::DeviceLost { .. }) => Err("the device was lost"),
+            Err(Error::Timeout { .. }) => Err("the frame was not done in time"),
+            Err(error) => return Err(error),
+        };
+        cost.pipeline = begun.elapsed();
+        Ok(match cue {
+            Ok(cue) => Said {
+                image: Some(&self.image),
+                view: View::of(&cue),
+                invalid: cue.invalid.map(|invalid| invalid.to_string()),
+                cue: Some(cue),
+            },
+            Err(lost) => Said { image: Some(&self.image), invalid: Some(lost.to_owned()), ..Said::default() },
+        })
+    }
+}

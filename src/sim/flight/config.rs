@@ -1,0 +1,177 @@
+//! What a flight is made of and told.
+
+use crate::camera::{Camera, Lens};
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::imu::GyroConfig;
+use crate::pipeline::PipelineConfig;
+use crate::sim::SightConfig;
+use crate::sim::vehicle::{
+    AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors,
+};
+use crate::sphere::{HeadingModel, Sphere};
+use crate::steer::SteerConfig;
+
+use super::Fault;
+
+/// What the steering sees by: a ladder from what is known exactly to what a camera gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensor {
+    /// The true nearness and the true direction of motion.
+    Depth,
+    /// The true flow of each cell.
+    Flow,
+    /// The true flow, blurred as a window blurs it, and noisy.
+    NoisyFlow,
+    /// Pictures through a lens, and a [`Pipeline`](crate::Pipeline).
+    #[default]
+    Images,
+}
+
+/// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow with a window of 21 px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowNoise {
+    /// Standard deviation of the Gaussian that it is blurred with, in pixels, above 0.
+    pub blur_px: f64,
+    /// Standard deviation of what is added to each cell along two axes, in pixels.
+    pub white_px: f64,
+    /// Standard deviation of the factor that it is multiplied with, against 1.
+    pub relative: f64,
+}
+
+impl Default for FlowNoise {
+    fn default() -> Self {
+        Self { blur_px: 7.0, white_px: 0.15, relative: 0.03 }
+    }
+}
+
+/// What flies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// A point in coordinated turns.
+    Turn(TurnParams),
+    /// A rigid body with an inner loop.
+    Airframe {
+        /// The airframe.
+        params: Box<AirframeParams>,
+        /// Its inner loop.
+        autopilot: Autopilot,
+    },
+}
+
+impl Default for Body {
+    fn default() -> Self {
+        Self::Airframe { params: Box::default(), autopilot: Autopilot::default() }
+    }
+}
+
+/// How a flight is flown.
+#[derive(Clone, Debug)]
+pub struct FlightConfig {
+    /// What flies.
+    pub body: Body,
+    /// Its airspeed, m/s, above 0.
+    pub speed_m_s: f64,
+    /// The radius of the ball around its middle that must stay free, metres, above 0: half the wing span.
+    pub radius_m: f64,
+    /// What the steering sees by.
+    pub sensor: Sensor,
+    /// The camera, at the body's origin, its axis along the body's x axis.
+    pub camera: Camera,
+    /// How its pictures come about.
+    pub sight: SightConfig,
+    /// How they are looked at. The gyro is set by the flight.
+    pub pipeline: PipelineConfig,
+    /// What is done about it. The camera's mounting and the latency are set by the flight.
+    pub steer: SteerConfig,
+    /// Frames from an exposure until its command acts, at most 30.
+    pub latency_frames: u32,
+    /// What the gyro gets wrong.
+    pub gyro: GyroErrors,
+    /// The share by which the airspeed sensor may be wrong, 0 or above and below 1.
+    pub airspeed_error: f64,
+    /// What vanes for the direction of motion get wrong; none where that is taken from the flow itself.
+    pub vanes: Option<VaneErrors>,
+    /// Where the air moves to, m/s NED.
+    pub wind_ned_m_s: glam::DVec3,
+    /// Gusts, if there are any.
+    pub gusts: Option<Gusts>,
+    /// What [`Sensor::NoisyFlow`] does to the true flow.
+    pub flow_noise: FlowNoise,
+    /// What goes wrong, and when.
+    pub faults: Vec<Fault>,
+    /// A flight that takes this many times as long as the straight way is given up, at least 1.
+    pub patience: f64,
+}
+
+impl Default for FlightConfig {
+    fn default() -> Self {
+        Self {
+            body: Body::default(),
+            speed_m_s: 12.0,
+            radius_m: 0.6,
+            sensor: Sensor::default(),
+            camera: camera(Size::new(320, 240)),
+            sight: SightConfig::default(),
+            pipeline: PipelineConfig {
+                sphere: Sphere {
+                    heading: HeadingModel::Turning,
+                    sectors: [48, 30],
+                    cell: 4,
+                    step: 2,
+                    window: 1,
+                    ..Sphere::default()
+                },
+                gyro: Some(GyroConfig::default()),
+                max_remaining_rad_s: 0.1,
+                ..PipelineConfig::default()
+            },
+            steer: SteerConfig::default(),
+            latency_frames: 1,
+            gyro: GyroErrors::default(),
+            airspeed_error: AirspeedModel::USUAL,
+            vanes: None,
+            wind_ned_m_s: glam::DVec3::ZERO,
+            gusts: None,
+            flow_noise: FlowNoise::default(),
+            faults: Vec::new(),
+            patience: 2.0,
+        }
+    }
+}
+
+/// A wide camera of this size with the usual barrel distortion: 96° across between the middles of the sides without it.
+pub fn camera(size: Size) -> Camera {
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let f = 0.53 * width;
+    let lens = Lens { coefficients: [-0.28, 0.075, 3e-4, -2e-4, 0.0, 0.0, 0.0, 0.0] };
+    Camera { size, f_u: f, f_v: f, u_0: 0.5 * (width - 1.0), v_0: 0.5 * (height - 1.0), lens }
+}
+
+impl FlightConfig {
+    /// Checks every parameter's range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], naming the first one that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        self.camera.validate()?;
+        self.pipeline.validate()?;
+        self.steer.validate()?;
+        for (name, value, low, high) in [
+            ("speed_m_s", self.speed_m_s, 0.1, 1e3),
+            ("radius_m", self.radius_m, 1e-3, 1e3),
+            ("flow_noise.blur_px", self.flow_noise.blur_px, 1e-3, 1e3),
+            ("flow_noise.white_px", self.flow_noise.white_px, 0.0, 1e3),
+            ("flow_noise.relative", self.flow_noise.relative, 0.0, 1.0),
+            ("patience", self.patience, 1.0, 1e3),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
+            }
+        }
+        if self.latency_frames > 30 {
+            return Err(Error::parameter("latency_frames", self.latency_frames, "0 to 30"));
+        }
+        self.faults.iter().try_for_each(Fault::validate)
+    }
+}

@@ -1,0 +1,143 @@
+//! What can go wrong in flight.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FaultKind {
+    /// The camera gives the last picture again and again.
+    Frozen,
+    /// The pictures are black.
+    Black,
+    /// This share of the pictures does not arrive, 0 to 1.
+    Dropped(f64),
+    /// The gyro is silent.
+    GyroLost,
+    /// The gyro says so much too much about each of its axes, rad/s.
+    GyroBias(f64),
+    /// The frames' times are not numbers.
+    NotANumber,
+    /// The device that computes the flow is destroyed, once, at the beginning.
+    DeviceLost,
+}
+
+/// Something that goes wrong for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// What goes wrong.
+    pub kind: FaultKind,
+    /// From when on, in seconds of flight.
+    pub from_s: f64,
+    /// Until when.
+    pub until_s: f64,
+}
+
+impl Fault {
+    /// Checks the times, and the share or the bias.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for what is out of range.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.from_s >= 0.0 && self.until_s > self.from_s) {
+            let found = format_args!("{} to {} s", self.from_s, self.until_s);
+            return Err(Error::parameter("fault", found, "from 0 or later until after that"));
+        }
+        match self.kind {
+            FaultKind::Dropped(share) if !(0.0..=1.0).contains(&share) => {
+                Err(Error::parameter("share of dropped frames", share, "0 to 1"))
+            }
+            FaultKind::GyroBias(bias) if !bias.is_finite() => {
+                Err(Error::parameter("bias of the gyro", bias, "a finite rate"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it is there at a time.
+    pub fn acts(&self, time_s: f64) -> bool {
+        (self.from_s..self.until_s).contains(&time_s)
+    }
+}
+
+/// What a fault is written like.
+const SYNTAX: &str = "KIND or KIND:FROM or KIND:FROM..UNTIL in seconds, KIND one of frozen, black, dropped=SHARE, \
+                      gyro-lost, gyro-bias=DEG_S, nan, device-lost";
+
+impl FromStr for Fault {
+    type Err = Error;
+
+    /// Reads `KIND`, `KIND:FROM` or `KIND:FROM..UNTIL`, such as `black:2..3` or `dropped=0.2`.
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || Error::parameter("fault", text, SYNTAX);
+        let (kind, times) = text.split_once(':').unwrap_or((text, "0"));
+        let (name, value) = kind.split_once('=').map_or((kind, None), |(name, value)| (name, Some(value)));
+        let number = |text: &str| text.parse::<f64>().ok().filter(|n| n.is_finite()).ok_or_else(wrong);
+        let value = value.map(number).transpose()?;
+        let kind = match (name, value) {
+            ("frozen", None) => FaultKind::Frozen,
+            ("black", None) => FaultKind::Black,
+            ("dropped", share) => FaultKind::Dropped(share.unwrap_or(0.2)),
+            ("gyro-lost", None) => FaultKind::GyroLost,
+            ("gyro-bias", bias_deg_s) => FaultKind::GyroBias(bias_deg_s.unwrap_or(5.0).to_radians()),
+            ("nan", None) => FaultKind::NotANumber,
+            ("device-lost", None) => FaultKind::DeviceLost,
+            _ => return Err(wrong()),
+        };
+        let (from_s, until_s) = match times.split_once("..") {
+            Some((from, until)) => (number(from)?, number(until)?),
+            None => (number(times)?, f64::INFINITY),
+        };
+        let fault = Self { kind, from_s, until_s };
+        fault.validate()?;
+        Ok(fault)
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            FaultKind::Frozen => write!(f, "frozen"),
+            FaultKind::Black => write!(f, "black"),
+            FaultKind::Dropped(share) => write!(f, "dropped={share}"),
+            FaultKind::GyroLost => write!(f, "gyro-lost"),
+            FaultKind::GyroBias(bias) => write!(f, "gyro-bias={}", bias.to_degrees()),
+            FaultKind::NotANumber => write!(f, "nan"),
+            FaultKind::DeviceLost => write!(f, "device-lost"),
+        }?;
+        write!(f, ":{}", self.from_s)?;
+        if self.until_s.is_finite() { write!(f, "..{}", self.until_s) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        for text in
+            ["frozen:1..2.5", "black:0", "dropped=0.2:3", "gyro-lost:2..3", "gyro-bias=5:1", "nan:4..4.1"]
+        {
+            let fault: Fault = text.parse().unwrap();
+            let back: Fault = fault.to_string().parse().unwrap();
+            assert_eq!(fault, back, "{text}");
+        }
+        let bias: Fault = "gyro-bias".parse().unwrap();
+        assert_eq!(bias.kind, FaultKind::GyroBias(5_f64.to_radians()));
+        assert!(bias.acts(0.0) && bias.acts(1e9));
+    }
+
+    #[test]
+    fn what_is_none_is_an_error_of_one_line() {
+        for text in ["", "froze", "frozen=1", "black:2..1", "black:x", "dropped=1.5", "dropped=nan", "nan:-1"]
+        {
+            let error = text.parse::<Fault>().unwrap_err().to_string();
+            assert!(error.contains("fault") || error.contains("share"), "{error}");
+            assert!(!error.contains('\n'), "{error}");
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! The closed loop: what is seen becomes a command, the command moves the vehicle, and the vehicle sees something else.
+//!
+//! A [`Flight`] takes a [`Course`], a vehicle, a sensor and a steering, and goes on frame by frame until the goal is reached
+//! or something else ends it. The same course and configuration give the same records, bit for bit, on the same machine
+//! and adapter.
+
+mod camera_eye;
+mod config;
+mod eye;
+mod fault;
+mod names;
+mod record;
+mod true_eye;
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use glam::DVec3;
+
+pub use config::{Body, FlightConfig, FlowNoise, Sensor, camera};
+pub use fault::{Fault, FaultKind};
+pub use record::{Cost, Outcome, Record, Summary};
+
+use crate::camera::{Camera, FRD_FROM_CAMERA, roll_pitch_yaw_rad};
+use crate::engine::Backend;
+use crate::error::Result;
+use crate::frame::Image;
+use crate::pipeline::Cue;
+use crate::sim::vehicle::{
+    Airframe, AirspeedModel, CoordinatedTurn, GyroModel, STEP_S, Start, VaneModel, Vehicle, VehicleState,
+    Wind,
+};
+use crate::sim::{Course, Random};
+use crate::sphere::Heading;
+use crate::steer::{Command, Decision, Goal, Observation, SteerConfig, Steering, View};
+use eye::{Eye, Moment, Said, gyro_config};
+use record::Tally;
+
+/// Steps of the vehicle from frame to frame.
+const STEPS: u32 = 8;
+/// From frame to frame, seconds.
+pub const FRAME_S: f64 = STEPS as f64 * STEP_S;
+
+/// A flight through a course.
+pub struct Flight {
+    course: Course,
+    config: FlightConfig,
+    vehicle: Box<dyn Vehicle>,
+    eye: Eye,
+    steering: Steering,
+    gyro: GyroModel,
+    airspeed: AirspeedModel,
+    vanes: Option<VaneModel>,
+    frame: u64,
+    /// Decided, and not acting yet.
+    waiting: VecDeque<Command>,
+    least_clearance_m: f64,
+    tally: Tally,
+    cost: Cost,
+    states: Vec<VehicleState>,
+}
+
+/// Standard error of a direction of motion from vanes, radians.
+const VANES_RAD: f64 = 0.035;
+
+/// What can be looked at of a frame while the flight goes on.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// The picture, if the sensor is a camera.
+    pub image: Option<&'a Image>,
+    /// What the pipeline says, if there is one and it says something.
+    pub cue: Option<&'a Cue<'a>>,
+    /// What became of it.
+    pub steering: &'a Steering,
+    /// What is kept.
+    pub record: &'a Record,
+}
+
+impl Flight {
+    /// A flight from the beginning of a course. The first backend draws the pictures, the second one computes the flow.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range; as
+    /// [`Sight::new`](crate::sim::Sight::new) and [`Pipeline::new`](crate::Pipeline::new).
+    pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
+        let mut config = config.clone();
+        config.pipeline.gyro = Some(gyro_config());
+        config.steer = SteerConfig {
+            latency_s: f64::from(config.latency_frames) * FRAME_S,
+            body_from_camera: FRD_FROM_CAMERA,
+            ..config.steer
+        };
+        config.validate()?;
+        course.validate()?;
+        let random = Random::new(course.seed);
+        let start = Start {
+            position_ned_m: course.start_ned_m,
+            yaw_rad: course.start_yaw_rad,
+            speed_m_s: config.speed_m_s,
+        };
+        let wind = Wind::new(config.wind_ned_m_s, config.gusts, random.fork(1).next_u64())?;
+        let vehicle: Box<dyn Vehicle> = match &config.body {
+            Body::Turn(params) => Box::new(CoordinatedTurn::new(params, &start, wind)?),
+            Body::Airframe { params, autopilot } => Box::new(Airframe::new(params, autopilot, &start, wind)?),
+        };
+        Ok(Self {
+            course: course.clone(),
+            vehicle,
+            eye: Eye::new(backends, &course.world, &config, random.fork(2))?,
+            steering: Steering::new(config.steer.clone())?,
+            gyro: GyroModel::new(&config.gyro, random.fork(3).next_u64())?,
+            airspeed: AirspeedModel::new(config.airspeed_error, random.fork(4).next_u64())?,
+            vanes: match &config.vanes {
+                Some(errors) => Some(VaneModel::new(errors, random.fork(5).next_u64())?),
+                None => None,
+            },
+            frame: 0,
+            waiting: std::iter::repeat_n(Command::default(), config.latency_frames as usize).collect(),
+            least_clearance_m: f64::INFINITY,
+            tally: Tally::default(),
+            cost: Cost::default(),
+            states: Vec::new(),
+            config,
+        })
+    }
+
+    /// Where it leads through.
+    pub fn course(&self) -> &Course {
+        &self.course
+    }
+
+    /// How it is flown.
+    pub fn config(&self) -> &FlightConfig {
+        &self.config
+    }
+
+    /// The pinhole in whose pictures the view is looked at.
+    pub fn ideal(&self) -> &Camera {
+        self.eye.ideal()
+    }
+
+    /// What the parts of the last frame cost.
+    pub fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    /// The vehicle's states from the last frame to the next one, [`STEP_S`] apart and each of the two included: what a gyro
+    /// or a faster camera on board would have seen. The last is missing where the flight ended.
+    pub fn states(&self) -> &[VehicleState] {
+        &self.states
+    }
+
+    /// Flies on to the end of the flight, and shows each frame.
+    ///
+    /// # Errors
+    /// As [`Flight::step`].
+    pub fn fly(&mut self, mut show: impl FnMut(&Seen<'_>) -> Result<()>) -> Result<Summary> {
+        loop {
+            if let Some(summary) = self.step(&mut show)? {
+                return Ok(summary);
+            }
+        }
+    }
+
+    /// Flies on by a frame, and shows it. The summary, when the flight has ended.
+    ///
+    /// # Errors
+    /// What drawing, the pipeline and `show` fail with, apart from faults that a flight goes on with.
+    pub fn step(&mut self, mut show: impl FnMut(&Seen<'_>) -> Result<()>) -> Result<Option<Summary>> {
+        let state = self.vehicle.state();
+        self.states.clear();
+        self.states.push(state);
+        self.push_gyro(&state);
+        let motion_body = self.vanes.as_mut().map(|vanes| vanes.direction_body(&state));
+        let Self { course, config, eye, steering, .. } = self;
+        let moment = Moment {
+            world: &course.world,
+            pose: state.camera_pose(),
+            velocity_world_m_s: state.velocity_ned_m_s,
+            heading: motion_body.map(|motion| Heading {
+                direction: FRD_FROM_CAMERA.transpose() * motion,
+                error_rad: VANES_RAD,
+            }),
+            frame: self.frame,
+            time_s: state.time_s,
+        };
+        let mut cost = Cost::default();
+        let said = eye.look(&moment, config, &mut cost)?;
+        let begun = Instant::now();
+        let observation = Observation {
+            time_s: state.time_s,
+            ned_from_body: state.world_from_body,
+            airspeed_m_s: self.airspeed.speed_m_s(&state),
+            motion_body,
+            goal: Goal {
+                yaw_rad: course.goal_yaw_rad,
+                too_low_m: Some(state.position_ned_m.z - course.start_ned_m.z),
+            },
+            view: said.view,
+        };
+        let decision = steering.update(&observation);
+        cost.steer = begun.elapsed();
+        self.waiting.push_back(decision.command);
+        let acting = self.waiting.pop_front().unwrap_or(decision.command);
+        let record = record(course, &moment, &state, &said, decision, acting);
+        show(&Seen { image: said.image, cue: said.cue.as_ref(), steering, record: &record })?;
+        let begun = Instant::now();
+        self.tally.add(&record);
+        let outcome = self.advance(&acting, &record);
+        cost.vehicle = begun.elapsed();
+        self.cost = cost;
+        self.frame += 1;
+        Ok(outcome.map(|outcome| self.tally.summary(outcome, &record, self.least_clearance_m)))
+    }
+
+    /// Moves the vehicle to the next frame.
+    fn advance(&mut self, acting: &Command, record: &Record) -> Option<Outcome> {
+        self.least_clearance_m = self.least_clearance_m.min(record.clearance_m);
+        if record.progress_m >= self.course.length_m {
+            return Some(Outcome::Reached);
+        }
+        let patience_s = self.config.patience * self.course.length_m / self.config.speed_m_s;
+        if record.time_s > patience_s {
+            return Some(Outcome::TimedOut);
+        }
+        for step in 1..=STEPS {
+            self.vehicle.advance(acting, STEP_S);
+            let state = self.vehicle.state();
+            let clearance_m = self.course.world.clearance_m(state.position_ned_m);
+            self.least_clearance_m = self.least_clearance_m.min(clearance_m);
+            if !(clearance_m >= self.config.radius_m) {
+                return Some(Outcome::Crashed);
+            }
+            let [low_m, high_m] = self.course.altitude_m;
+            if !(low_m..=high_m).contains(&-state.position_ned_m.z) {
+                return Some(Outcome::LeftBand);
+            }
+            self.states.push(state);
+            // That of the last step is the next frame's own.
+            if step < STEPS {
+                self.push_gyro(&state);
+            }
+        }
+        None
+    }
+
+    fn push_gyro(&mut self, state: &VehicleState) {
+        let mut sample = self.gyro.sample(state);
+        for fault in self.config.faults.iter().filter(|fault| fault.acts(state.time_s)) {
+            match fault.kind {
+                FaultKind::GyroLost => return,
+                FaultKind::GyroBias(bias_rad_s) => sample.gyro_rad_s += bias_rad_s,
+                _ => (),
+            }
+        }
+        self.eye.push_gyro(sample);
+    }
+}
+
+/// What is kept of a frame.
+fn record(
+    course: &Course,
+    at: &Moment<'_>,
+    state: &VehicleState,
+    said: &Said<'_>,
+    decision: Decision,
+    acting: Command,
+) -> Record {
+    let motion = at.velocity_world_m_s;
+    let ahead = at.pose.world_from_camera.transpose() * motion.normalize_or(DVec3::X);
+    let true_rate_hz = course.world.seen(&at.pose, ahead).nearness_per_m * motion.length();
+    let heading = said.view.map(|view| view.heading).filter(Heading::is_known);
+    let contact_s = said.view.and_then(|View { sectors, .. }| {
+        let [column, row] = sectors.grid.sector(ahead)?;
+        sectors.time_to_contact_s(sectors.get(column, row))[1]
+    });
+    Record {
+        frame: at.frame,
+        time_s: at.time_s,
+        position_ned_m: state.position_ned_m,
+        velocity_ned_m_s: state.velocity_ned_m_s,
+        roll_pitch_yaw_rad: roll_pitch_yaw_rad(&state.world_from_body),
+        rate_body_rad_s: state.rate_body_rad_s,
+        airspeed_m_s: state.air_velocity_body_m_s.length(),
+        clearance_m: course.world.clearance_m(state.position_ned_m),
+        progress_m: course.progress_m(state.position_ned_m),
+        offset_m: course.offset_m(state.position_ned_m),
+        invalid: said.invalid.clone(),
+        coverage: said.view.map_or(0.0, |view| view.sectors.coverage()),
+        heading_error_rad: heading.map(|heading| heading.direction.angle_between(ahead)),
+        contact_s,
+        true_contact_s: (true_rate_hz > 0.0).then(|| true_rate_hz.recip()),
+        command: decision.command,
+        source: decision.source,
+        danger: decision.danger,
+        acting,
+    }
+}
