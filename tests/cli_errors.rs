@@ -154,6 +154,6 @@ fn parameters() {
     refused(&folder, &["crosscheck", "--bounds", "NaN"], &["--bounds is NaN"]);
     refused(&folder, &["bench", "--frames", "1"], &["--frames is 1", "2 to 100000"]);
     refused(&folder, &["demo", "--adapter", "no such adapter"], &["no usable GPU adapter"]);
-    refused(&folder, &["fly"], &["fly"]);
+    refused(&folder, &["swim"], &["swim"]);
     refused(&folder, &[], &["--help"]);
 }

@@ -41,6 +41,22 @@ impl BackendArgs {
         self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() })
     }
 
+    /// Two of the same kind, on devices of their own: what happens to one does not happen to the other.
+    pub(super) fn open_pair(&self) -> Result<[Backend; 2]> {
+        let first = self.open()?;
+        let second = self.open_like(&first)?;
+        Ok([first, second])
+    }
+
+    /// Another one of the kind that was opened, on a device of its own. Says nothing.
+    pub(super) fn open_like(&self, opened: &Backend) -> Result<Backend> {
+        match (opened, self.backend, &self.adapter) {
+            (Backend::Cpu, ..) => Ok(Backend::Cpu),
+            (Backend::Gpu(_), None, None) => Gpu::new(&GpuOptions::default()).map(Backend::Gpu),
+            (Backend::Gpu(_), ..) => self.gpu().map(Backend::Gpu),
+        }
+    }
+
     fn open_with(&self, default: &GpuOptions) -> Result<Backend> {
         let backend = match (self.backend, &self.adapter) {
             (None, None) => match Gpu::new(default) {

@@ -7,15 +7,18 @@ mod args;
 mod backend;
 mod bench;
 mod buffers;
+mod campaign;
 mod crosscheck;
 mod demo;
 mod devices;
 mod environment;
 mod eval;
 mod flow;
+mod fly;
 mod input;
 mod print;
 mod run;
+mod simulate;
 mod undistort;
 
 use std::process::ExitCode;
@@ -37,7 +40,10 @@ Examples:
   viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be met, where and when
+  viewsphere simulate --world city --seed 3 -o set/    a made-up flight with exact truth
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
+  viewsphere fly --world forest --seed 7             through a made-up world on what the view says
+  viewsphere campaign --worlds wall,city --seeds 0..100    how often that goes well
   viewsphere devices                                 what there is to compute on
 
 Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what."
@@ -51,6 +57,9 @@ struct Cli {
 enum Command {
     Flow(Box<flow::Flow>),
     Run(Box<run::Run>),
+    Fly(Box<fly::Fly>),
+    Campaign(Box<campaign::Campaign>),
+    Simulate(Box<simulate::Simulate>),
     Undistort(Box<undistort::Undistort>),
     Crosscheck(Box<crosscheck::Crosscheck>),
     Eval(eval::Eval),
@@ -88,6 +97,9 @@ impl Command {
         match self {
             Self::Flow(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Fly(command) => command.run(),
+            Self::Campaign(command) => command.run(),
+            Self::Simulate(command) => command.run(),
             Self::Undistort(command) => command.run(),
             Self::Crosscheck(command) => command.run(),
             Self::Eval(command) => command.run(),

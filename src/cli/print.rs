@@ -30,7 +30,12 @@ pub(super) fn text(text: &str) -> Result<()> {
 
 /// Figures to standard output, as JSON. What is not a number is `null` there.
 pub(super) fn json(figures: &impl Serialize) -> Result<()> {
-    text(&to_json(serde_json::to_string_pretty(figures))?)
+    text(&pretty(figures)?)
+}
+
+/// Figures as JSON over several lines, without their end.
+pub(super) fn pretty(figures: &impl Serialize) -> Result<String> {
+    to_json(serde_json::to_string_pretty(figures))
 }
 
 /// The same on one line.

@@ -47,6 +47,18 @@ pub fn encode_plane(plane: &Plane) -> Result<Vec<u8>> {
     Ok(join(plane.size, "", &plane.data))
 }
 
+/// The bytes of three values a pixel as an array of height × width × 3. Every value is kept as it is, NaN too.
+///
+/// # Errors
+/// [`Error::Parameter`] for a size out of range, [`Error::Length`] if there are not as many triples as pixels.
+pub fn encode_triples(size: Size, triples: &[[f32; 3]]) -> Result<Vec<u8>> {
+    size.validate()?;
+    if triples.len() != size.pixels() {
+        return Err(Error::Length { what: "triples", found: triples.len(), expected: size.pixels() });
+    }
+    Ok(join(size, ", 3", triples.as_flattened()))
+}
+
 /// Reads a flow field. See [`decode`].
 ///
 /// # Errors
@@ -139,6 +151,17 @@ mod tests {
         assert!(bytes[10..].starts_with(b"{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }"));
         assert_eq!(decode_plane(Path::new("a.npy"), &bytes).unwrap(), plane);
         assert!(decode(Path::new("a.npy"), &bytes).unwrap_err().to_string().contains("shape is [2, 3]"));
+    }
+
+    #[test]
+    fn triples_have_three_values_a_pixel() {
+        let bytes = encode_triples(Size::new(2, 1), &[[1.0, 2.0, 3.0], [4.0, 5.0, f32::NAN]]).unwrap();
+        assert!(bytes[10..].starts_with(b"{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2, 3), }"));
+        assert_eq!(
+            (&bytes[bytes.len() - 24..bytes.len() - 20], bytes.len() % 64),
+            (&1_f32.to_le_bytes()[..], 24)
+        );
+        assert!(encode_triples(Size::new(2, 1), &[[0.0; 3]]).is_err());
     }
 
     #[test]

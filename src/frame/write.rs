@@ -12,29 +12,30 @@ use crate::error::{Error, Result};
 /// `content` is given a buffered writer to a temporary file in the same folder; when it returns, the file is flushed,
 /// synchronised and renamed to `path`. If anything fails, the temporary file is removed and `path` is left alone.
 ///
-/// A pipe or a device is written to as it stands.
+/// A pipe or a device is written to as it stands. Returns what `content` does.
 ///
 /// # Errors
-/// What `content` returns, or [`Error::Io`] naming the folder if the temporary file cannot be made there, or naming
+/// What `content` fails with, or [`Error::Io`] naming the folder if the temporary file cannot be made there, or naming
 /// `path` if it cannot be finished.
-pub fn write_atomic(
+pub fn write_atomic<T>(
     path: impl AsRef<Path>,
-    content: impl FnOnce(&mut dyn Write) -> Result<()>,
-) -> Result<()> {
+    content: impl FnOnce(&mut dyn Write) -> Result<T>,
+) -> Result<T> {
     let path = path.as_ref();
     if fs::metadata(path).is_ok_and(|target| !target.is_file() && !target.is_dir()) {
         // A pipe or a device cannot be replaced, only written to.
         let file = OpenOptions::new().write(true).open(path).map_err(|source| Error::io(path, source))?;
         let mut out = BufWriter::new(file);
-        content(&mut out)?;
-        return out.flush().map_err(|source| Error::io(path, source));
+        let done = content(&mut out)?;
+        return out.flush().map(|()| done).map_err(|source| Error::io(path, source));
     }
     // What a link points to is replaced, not the link.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let path = target.as_path();
     let (temporary, file) = create_beside(path)?;
-    let done = fill(path, file, content)
-        .and_then(|()| fs::rename(&temporary, path).map_err(|source| Error::io(path, source)));
+    let done = fill(path, file, content).and_then(|done| {
+        fs::rename(&temporary, path).map(|()| done).map_err(|source| Error::io(path, source))
+    });
     if done.is_err() {
         // The first error is the one to report; a temporary that cannot be removed does not change it.
         let _ = fs::remove_file(&temporary);
@@ -83,12 +84,13 @@ fn create_beside(path: &Path) -> Result<(PathBuf, File)> {
     }
 }
 
-fn fill(path: &Path, file: File, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+fn fill<T>(path: &Path, file: File, content: impl FnOnce(&mut dyn Write) -> Result<T>) -> Result<T> {
     let mut out = BufWriter::new(file);
-    content(&mut out)?;
+    let done = content(&mut out)?;
     // Without the sync a crash soon after the rename could leave an empty file under the final name.
     out.into_inner()
         .map_err(io::IntoInnerError::into_error)
         .and_then(|file| file.sync_all())
+        .map(|()| done)
         .map_err(|source| Error::io(path, source))
 }

@@ -1,4 +1,4 @@
-//! Digits for pictures, 3×5 dots each.
+//! Letters and digits for pictures, 3×5 dots each.
 
 use crate::frame::Image;
 
@@ -7,7 +7,7 @@ const ADVANCE: usize = 4;
 /// Dots of a character's height.
 const HEIGHT: usize = 5;
 
-/// Writes digits, points, signs and `s`, with black around them, on a picture of
+/// Writes digits, letters (in capitals) and some signs, with black around them, on a picture of
 /// [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). A dot is `scale` pixels wide; the first one's upper left corner
 /// is at `at`, or as near to it as all of the text fits in. What has no glyph is a blank.
 pub(super) fn text(image: &mut Image, at: [f64; 2], text: &str, colour: [u8; 3], scale: usize) {
@@ -31,7 +31,7 @@ pub(super) fn text(image: &mut Image, at: [f64; 2], text: &str, colour: [u8; 3],
 
 /// A character's rows, the leftmost dot in the third bit.
 fn glyph(character: char) -> [u8; HEIGHT] {
-    match character {
+    match character.to_ascii_uppercase() {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
         '1' => [0b010, 0b110, 0b010, 0b010, 0b111],
         '2' => [0b111, 0b001, 0b111, 0b100, 0b111],
@@ -44,7 +44,40 @@ fn glyph(character: char) -> [u8; HEIGHT] {
         '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
         '.' => [0b000, 0b000, 0b000, 0b000, 0b010],
         '-' => [0b000, 0b000, 0b111, 0b000, 0b000],
-        's' => [0b011, 0b100, 0b010, 0b001, 0b110],
+        '+' => [0b000, 0b010, 0b111, 0b010, 0b000],
+        ':' => [0b000, 0b010, 0b000, 0b010, 0b000],
+        '/' => [0b001, 0b001, 0b010, 0b100, 0b100],
+        '°' => [0b010, 0b101, 0b010, 0b000, 0b000],
+        ',' => [0b000, 0b000, 0b000, 0b010, 0b100],
+        '%' => [0b101, 0b001, 0b010, 0b100, 0b101],
+        '(' => [0b001, 0b010, 0b010, 0b010, 0b001],
+        ')' => [0b100, 0b010, 0b010, 0b010, 0b100],
+        'A' => [0b010, 0b101, 0b111, 0b101, 0b101],
+        'B' => [0b110, 0b101, 0b110, 0b101, 0b110],
+        'C' => [0b011, 0b100, 0b100, 0b100, 0b011],
+        'D' => [0b110, 0b101, 0b101, 0b101, 0b110],
+        'E' => [0b111, 0b100, 0b110, 0b100, 0b111],
+        'F' => [0b111, 0b100, 0b110, 0b100, 0b100],
+        'G' => [0b011, 0b100, 0b101, 0b101, 0b011],
+        'H' => [0b101, 0b101, 0b111, 0b101, 0b101],
+        'I' => [0b111, 0b010, 0b010, 0b010, 0b111],
+        'J' => [0b001, 0b001, 0b001, 0b101, 0b010],
+        'K' => [0b101, 0b101, 0b110, 0b101, 0b101],
+        'L' => [0b100, 0b100, 0b100, 0b100, 0b111],
+        'M' => [0b101, 0b111, 0b111, 0b101, 0b101],
+        'N' => [0b110, 0b101, 0b101, 0b101, 0b101],
+        'O' => [0b010, 0b101, 0b101, 0b101, 0b010],
+        'P' => [0b110, 0b101, 0b110, 0b100, 0b100],
+        'Q' => [0b010, 0b101, 0b101, 0b111, 0b011],
+        'R' => [0b110, 0b101, 0b110, 0b101, 0b101],
+        'S' => [0b011, 0b100, 0b010, 0b001, 0b110],
+        'T' => [0b111, 0b010, 0b010, 0b010, 0b010],
+        'U' => [0b101, 0b101, 0b101, 0b101, 0b111],
+        'V' => [0b101, 0b101, 0b101, 0b101, 0b010],
+        'W' => [0b101, 0b101, 0b111, 0b111, 0b101],
+        'X' => [0b101, 0b101, 0b010, 0b101, 0b101],
+        'Y' => [0b101, 0b101, 0b010, 0b010, 0b010],
+        'Z' => [0b111, 0b001, 0b010, 0b100, 0b111],
         _ => [0; HEIGHT],
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::colours::TIMES;
 use super::font::text;
 use super::straight::{Straight, pixels};
 use crate::camera::Camera;
@@ -15,9 +16,6 @@ use crate::sphere::{Grid, Threat, bearing};
 const FULL_COLOUR: f32 = 0.01;
 /// How much of the gray picture the fullest colour leaves.
 const OPAQUE: f32 = 0.6;
-/// Times to contact in seconds, each with the colour of what is met sooner.
-const TIMES: [(f64, [u8; 3]); 4] =
-    [(1.0, [255, 30, 30]), (2.0, [255, 140, 0]), (4.0, [255, 230, 0]), (8.0, [60, 220, 60])];
 const HEADING: [u8; 3] = [255; 3];
 const HORIZON: [u8; 3] = [0, 220, 255];
 const INVALID: [u8; 3] = [200, 0, 0];
@@ -245,6 +243,7 @@ mod tests {
             interval_s: Some(0.1),
             invalid: None,
             prev_from_cur: None,
+            remaining_turn_rad_s: None,
             heading: Heading::UNKNOWN,
             sectors,
             threat: None,

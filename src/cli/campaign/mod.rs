@@ -1,0 +1,255 @@
+//! `viewsphere campaign`: many flights, and what they say together.
+
+mod merge;
+mod report;
+
+use std::num::NonZero;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::merge::Merge;
+use super::backend::BackendArgs;
+use super::fly::setup::SetupArgs;
+use super::{Outcome, input, print};
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::sim::CourseKind;
+use crate::sim::campaign::{
+    Campaign as Plan, Configuration, Ended, Faults, Job, Journal, Opened, Results, Shard, fly_all,
+};
+use crate::sim::flight::{self, Sensor};
+use crate::steer::{Danger, Policy};
+
+/// The file that results are kept in.
+const RESULTS: &str = "results.jsonl";
+
+/// Fly every combination of worlds, policies and so on, each with many seeds, and say how often the goal is reached.
+///
+/// Written into the folder: results.jsonl, an object a flight, added as soon as it has ended; and at the end table.csv,
+/// table.json and report.html, a page that needs nothing beside itself, with a row for each combination: flights; how many reached the goal, crashed, left the band of altitudes or took
+/// too long; the rate of success with its 95 % interval (Wilson 1927); the least clearance of a flight, mean and 5th
+/// percentile; path efficiency of the flights that reached the goal; the way flown a crash; the roll rate (root mean
+/// square); the share of time without a cue; the offset from the middle of the way where there is one.
+///
+/// It can be stopped at any time: called again it goes on where it was, tries again what failed with an error, and flies
+/// what was added to the lists. Results of another version or configuration are refused. The table is of all results in the
+/// folder. The same flights give the same files, however many are flown at a time.
+#[derive(Args, Debug)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  viewsphere campaign --worlds wall,corridor,city --policies arc,balance --seeds 0..100 -o campaign/
+  viewsphere campaign --worlds forest:density=1/100,forest:density=1/64 --sensors depth,flow,noisy-flow,images
+  viewsphere campaign --worlds city --faults none,black:2..3,dropped=0.2+gyro-bias=5:4
+  viewsphere campaign --worlds forest --seeds 0..1000 --shard $SLURM_ARRAY_TASK_ID/10 -o part_$SLURM_ARRAY_TASK_ID
+  viewsphere campaign merge part_* -o campaign/
+
+Exit codes: 0 done, whatever the flights ended with; 2 an error, also if a flight failed with one."
+)]
+pub(super) struct Campaign {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Worlds, as `viewsphere fly` takes them
+    #[arg(long, value_name = "WORLD,...", value_delimiter = ',', default_value = "forest")]
+    worlds: Vec<CourseKind>,
+    /// What is steered by: depth, flow, noisy-flow, images
+    #[arg(long, value_name = "SENSOR,...", value_delimiter = ',', default_values_t = [Sensor::default()])]
+    sensors: Vec<Sensor>,
+    /// How commands are found: none, balance, potential, heading, arc
+    #[arg(long, value_name = "POLICY,...", value_delimiter = ',', default_values_t = [Policy::default()])]
+    policies: Vec<Policy>,
+    /// What counts as near: divergence, nearness, blend
+    #[arg(long, value_name = "DANGER,...", value_delimiter = ',', default_values_t = [Danger::default()])]
+    dangers: Vec<Danger>,
+    /// Airspeeds, m/s
+    #[arg(
+        long,
+        value_name = "M_S,...",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        default_value = "12"
+    )]
+    speeds: Vec<f64>,
+    /// Sizes of the pictures
+    #[arg(long, value_name = "WxH,...", value_delimiter = ',', default_value = "320x240")]
+    sizes: Vec<Size>,
+    /// Frames from an exposure until its command acts
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1")]
+    latencies: Vec<u32>,
+    /// What goes wrong, as `viewsphere fly` takes it: none, one fault, or several with + between them
+    #[arg(long, value_name = "FAULT[+FAULT]...,...", value_delimiter = ',', default_value = "none")]
+    faults: Vec<Faults>,
+    /// Seeds of the worlds: from the first until before the last, or a single one
+    #[arg(long, value_name = "FIRST..LAST", default_value = "0..10")]
+    seeds: Seeds,
+    /// Folder to write into; it is made if it is not there
+    #[arg(short, long, value_name = "FOLDER", default_value = "campaign")]
+    output: PathBuf,
+    /// Flights at a time [default: as many as there are cores]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
+    /// Fly only the I-th of N parts of the flights, I from 1 to N; `campaign merge` puts them together
+    #[arg(long, value_name = "I/N", default_value_t = Shard::ALL)]
+    shard: Shard,
+    /// Print the table as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    setup: SetupArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Merge(Merge),
+}
+
+#[derive(Clone, Debug)]
+struct Seeds(Range<u64>);
+
+impl FromStr for Seeds {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || Error::parameter("seeds", format_args!("{text:?}"), "FIRST..LAST or a single one");
+        let number = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
+        let seeds = match text.split_once("..") {
+            Some((first, last)) => number(first)?..number(last)?,
+            None => number(text).and_then(|seed| Ok(seed..seed.checked_add(1).ok_or_else(wrong)?))?,
+        };
+        if seeds.is_empty() { Err(wrong()) } else { Ok(Self(seeds)) }
+    }
+}
+
+impl Campaign {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        match &self.command {
+            Some(Command::Merge(merge)) => merge.run(),
+            None => self.fly(),
+        }
+    }
+
+    fn fly(&self) -> Result<Outcome> {
+        let plan = self.plan();
+        let backend = match self.sensors.contains(&Sensor::Images) {
+            true => self.backend.open()?,
+            false => Backend::Cpu,
+        };
+        plan.validate(&backend)?;
+        let at_a_time = self.at_a_time()?;
+        input::folder(&self.output)?;
+        let path = self.output.join(RESULTS);
+        let configuration = Configuration::new(&plan.base, self.setup.text());
+        let Opened { mut journal, mut results, repaired } = Journal::open(&path, &configuration)?;
+        if repaired {
+            print::note(format_args!("{}: dropped a half-written line at its end", path.display()));
+        }
+        let mut jobs = self.shard.part(plan.jobs());
+        let all = jobs.len();
+        jobs.retain(|job| !results.has_flown(&job.key()));
+        // Seed by seed, so that there is something of every setting when it is stopped, and the time left is known early.
+        jobs.sort_by_key(|job| job.seed);
+        print::note(format_args!("{} flights, {} of them done before", all, all - jobs.len()));
+        let bar = progress(&jobs);
+        let open = || Ok([self.backend.open_like(&backend)?, self.backend.open_like(&backend)?]);
+        let mut tally = Tally::default();
+        let flown = fly_all(&jobs, &plan.base, at_a_time, &open, |result| {
+            journal.add(&result)?;
+            tally.add(&result.ended);
+            bar.set_message(tally.text());
+            bar.inc(1);
+            results.add(&path, result)
+        });
+        bar.finish_and_clear();
+        drop(journal);
+        flown?;
+        results.write(&path)?;
+        finish(&results, &self.output, self.json)
+    }
+
+    fn plan(&self) -> Plan {
+        Plan {
+            base: self.setup.config(),
+            worlds: self.worlds.clone(),
+            sensors: self.sensors.clone(),
+            policies: self.policies.clone(),
+            dangers: self.dangers.clone(),
+            speeds_m_s: self.speeds.clone(),
+            sizes: self.sizes.clone(),
+            latencies_frames: self.latencies.clone(),
+            faults: self.faults.clone(),
+            seeds: self.seeds.0.clone(),
+        }
+    }
+
+    fn at_a_time(&self) -> Result<NonZero<usize>> {
+        let cores = || std::thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN);
+        let jobs = self.jobs.unwrap_or_else(cores);
+        if jobs.get() > MAX_JOBS {
+            return Err(Error::parameter("--jobs", jobs, format_args!("1 to {MAX_JOBS}")));
+        }
+        Ok(jobs)
+    }
+}
+
+/// More threads than any machine has use for.
+const MAX_JOBS: usize = 4096;
+
+/// How the flights of this call ended.
+#[derive(Default)]
+struct Tally {
+    reached: usize,
+    not_reached: usize,
+    failed: usize,
+}
+
+impl Tally {
+    fn add(&mut self, ended: &Ended) {
+        match ended {
+            Ended::Flown(summary) if summary.outcome == flight::Outcome::Reached => self.reached += 1,
+            Ended::Flown(_) => self.not_reached += 1,
+            Ended::Failed(_) => self.failed += 1,
+        }
+    }
+
+    fn text(&self) -> String {
+        let Self { reached, not_reached, failed } = self;
+        let failed = if *failed > 0 { format!(", {failed} failed") } else { String::new() };
+        format!("{reached} reached the goal, {not_reached} did not{failed}")
+    }
+}
+
+/// Writes and prints the table. That a flight failed is an error, after everything is written.
+fn finish(results: &Results, folder: &Path, json: bool) -> Result<Outcome> {
+    let table = results.table();
+    report::write(folder, &table)?;
+    if json {
+        print::json(&table)?;
+    } else {
+        print::text(&report::text(&table))?;
+    }
+    let mut failed = results.sorted().into_iter().filter_map(|result| match &result.ended {
+        Ended::Failed(reason) => Some((result.job.key(), reason)),
+        Ended::Flown(_) => None,
+    });
+    match failed.next() {
+        None => Ok(Outcome::Done),
+        Some((key, reason)) => {
+            let found = format!("{}, the first {key}: {reason}", failed.count() + 1);
+            Err(Error::parameter("number of flights that failed", found, "none"))
+        }
+    }
+}
+
+/// A bar over the flights, on standard error where that is a terminal.
+fn progress(jobs: &[Job]) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} flights, {eta} left, {msg}");
+    ProgressBar::new(jobs.len() as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

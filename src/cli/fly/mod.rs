@@ -1,0 +1,338 @@
+//! `viewsphere fly`: a flight through a made-up world on what the view says.
+
+mod log;
+pub(super) mod setup;
+mod timing;
+mod video;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use self::log::End;
+use self::setup::SetupArgs;
+use self::timing::Costs;
+use self::video::Video;
+use super::backend::BackendArgs;
+use super::{Outcome, input, print};
+use crate::engine::Backend;
+use crate::error::{Error, Result};
+use crate::frame::{Size, write_atomic, write_bytes};
+use crate::report::flight::{FlightReport, FlightVideo};
+use crate::sim::campaign::Faults;
+use crate::sim::course::file;
+use crate::sim::flight::{self, FRAME_S, Fault, Flight, FlightConfig, Record, Seen, Sensor, Summary};
+use crate::sim::{Course, CourseKind};
+use crate::steer::{Danger, Policy, SteerConfig};
+
+/// Fly through a made-up world on what the view says, and write down how that went.
+///
+/// Each frame of 30 Hz is drawn, its flow computed and steered by, until the goal is reached or something else ends the
+/// flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end and wires, with parameters after colons
+/// where others than the defaults are wanted, or one is read from a file. The same arguments give the same flight, bit for
+/// bit on the same adapter.
+///
+/// Written into the folder: flight.jsonl, a JSON object a line: first what the flight was (version, world, seed, all
+/// settings, and a fingerprint of the whole configuration), then each frame (frame, time_s, position_ned_m,
+/// velocity_ned_m_s, roll_pitch_yaw_rad, rate_body_rad_s, airspeed_m_s, clearance_m, progress_m, offset_m from the middle of
+/// the way, invalid: null or why there is no cue, coverage 0 to 1, heading_error_rad, contact_s and true_contact_s along the
+/// motion, source: cue, held or recovery, command, danger 0 to 1, acting: the command that acts after the latency), last how
+/// it ended (outcome: reached, crashed, left-band or timed-out; and figures); timing.json, what the parts of a frame cost on
+/// this machine; report.html, the whole flight on a page that needs nothing beside itself; and flight.y4m, a video (10 Hz) of
+/// what is seen and made of it, a map and figures. It is not compressed: some 25 MB for each second of flight.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere fly --world forest --seed 7
+  viewsphere fly --world wall --sensor depth --policy balance --json
+  viewsphere fly --world forest:density=1/64:radius=0.2..0.3 --speed 8 --size 640x480 -o dense/
+  viewsphere fly --world city --fault black:2..3 --fault gyro-bias=5:6 -o faults/
+  viewsphere fly --world corridor --backend gpu --fault device-lost:3
+  viewsphere fly --world forest --wind -3,0,0 --gusts light --vanes
+  viewsphere fly --world wires --seed 2 --save-world wires.json --no-video
+  viewsphere fly --world-file wires.json -o wires/ && ffmpeg -i wires/flight.y4m wires/flight.mp4
+
+Exit codes: 0 the goal was reached, 1 it was not, 2 an error.")]
+pub(super) struct Fly {
+    /// The world, with its parameters
+    #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "forest")]
+    world: CourseKind,
+    /// Which one of its kind
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// The world from a file of JSON, made by hand or by --save-world
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "seed"])]
+    world_file: Option<PathBuf>,
+    /// Write the world of --world and --seed to a file for --world-file, then fly
+    #[arg(long, value_name = "FILE", conflicts_with = "world_file")]
+    save_world: Option<PathBuf>,
+    /// How a command is found: none, balance, potential, heading or arc
+    #[arg(long, value_name = "POLICY", default_value_t)]
+    policy: Policy,
+    /// What counts as near: divergence, nearness or blend
+    #[arg(long, value_name = "DANGER", default_value_t)]
+    danger: Danger,
+    /// What is steered by: true depth, true flow, noisy-flow, or the flow of images
+    #[arg(long, value_name = "SENSOR", default_value_t)]
+    sensor: Sensor,
+    /// The same as --sensor flow
+    #[arg(long, conflicts_with = "sensor")]
+    truth_flow: bool,
+    /// Airspeed, m/s
+    #[arg(long, value_name = "M_S", allow_negative_numbers = true, default_value_t = 12.0)]
+    speed: f64,
+    /// Size of the pictures
+    #[arg(long, value_name = "WxH", default_value = "320x240")]
+    size: Size,
+    /// Frames from an exposure until its command acts, at most 30
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    latency_frames: u32,
+    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
+    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost
+    #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
+    faults: Vec<Fault>,
+    /// Folder to write into; it is made if it is not there
+    #[arg(short, long, value_name = "FOLDER", default_value = "flight")]
+    output: PathBuf,
+    /// Make no flight.y4m; what an earlier flight has left of it in the folder is removed
+    #[arg(long)]
+    no_video: bool,
+    /// Say nothing while it flies
+    #[arg(long)]
+    quiet: bool,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    setup: SetupArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+/// The files of a flight.
+const LOG: &str = "flight.jsonl";
+const TIMING: &str = "timing.json";
+const PAGE: &str = "report.html";
+const VIDEO: &str = "flight.y4m";
+const FILES: [&str; 4] = [LOG, TIMING, PAGE, VIDEO];
+
+/// What is kept while it flies.
+struct Recorder {
+    records: Vec<Record>,
+    costs: Costs,
+    bar: ProgressBar,
+    /// Whether a line a second is said where there is no bar.
+    talks: bool,
+}
+
+impl Fly {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        let config = self.config();
+        config.validate()?;
+        let course = self.course()?;
+        input::folder(&self.output)?;
+        let backends = match config.sensor {
+            Sensor::Images => self.backend.open_pair()?,
+            _ => [Backend::Cpu, Backend::Cpu],
+        };
+        Faults(self.faults.clone()).check(config.sensor, &backends[1])?;
+        let names = (config.sensor == Sensor::Images).then(|| backends.each_ref().map(Backend::name));
+        let mut flight = Flight::new(backends, &course, &config)?;
+        let drawing = if self.no_video { None } else { Some(FlightVideo::new(&flight)?) };
+        let mut recorder = Recorder {
+            records: Vec::new(),
+            costs: Costs::default(),
+            bar: if self.quiet { ProgressBar::hidden() } else { progress(&course) },
+            talks: !self.quiet,
+        };
+        fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
+        if let Some(path) = &self.save_world {
+            file::write(path, &course)?;
+        }
+        let flown = self.fly(&mut flight, &mut recorder, drawing);
+        recorder.bar.finish_and_clear();
+        self.finish(&flight, &recorder, &flown?, names)
+    }
+
+    fn course(&self) -> Result<Course> {
+        let Some(path) = &self.world_file else { return self.world.course(self.seed) };
+        let course = file::read(path)?;
+        for name in FILES {
+            input::spared("-o", Some(&self.output.join(name)), [path.as_path()])?;
+        }
+        Ok(course)
+    }
+
+    /// Flies to the end, into a video where there is to be one.
+    fn fly(
+        &self,
+        flight: &mut Flight,
+        recorder: &mut Recorder,
+        drawing: Option<FlightVideo>,
+    ) -> Result<Summary> {
+        let path = self.output.join(VIDEO);
+        let Some(drawing) = drawing else {
+            let summary = recorder.fly(flight, None)?;
+            remove(&path)?;
+            return Ok(summary);
+        };
+        write_atomic(&path, |out| {
+            let mut video = Video::new(drawing, out, &path)?;
+            let summary = recorder.fly(flight, Some(&mut video))?;
+            video.finish()?;
+            Ok(summary)
+        })
+    }
+
+    fn config(&self) -> FlightConfig {
+        let mut config = FlightConfig {
+            speed_m_s: self.speed,
+            sensor: if self.truth_flow { Sensor::Flow } else { self.sensor },
+            camera: flight::camera(self.size),
+            steer: SteerConfig { policy: self.policy, danger: self.danger, ..SteerConfig::default() },
+            latency_frames: self.latency_frames,
+            faults: self.faults.clone(),
+            ..self.setup.config()
+        };
+        // To be drawn: nothing is steered by it.
+        config.pipeline.engine.read_flow = !self.no_video;
+        config
+    }
+
+    /// Writes what was kept, and says how it ended.
+    fn finish(
+        &self,
+        flight: &Flight,
+        recorder: &Recorder,
+        summary: &Summary,
+        names: Option<[String; 2]>,
+    ) -> Result<Outcome> {
+        let Recorder { records, costs, .. } = recorder;
+        let end = End::from(summary);
+        let mut lines = vec![log::header(flight, &self.setup, names.as_ref())?];
+        for record in records {
+            lines.push(log::frame(record)?);
+        }
+        lines.push(print::one_line(&end)?);
+        let page = FlightReport {
+            course: flight.course(),
+            config: flight.config(),
+            backend: &computed_on(names.as_ref()),
+            records,
+            summary,
+            costs: costs.frames(),
+        };
+        let timing = costs.timing(names);
+        let texts = [lines.join("\n") + "\n", print::one_line(&timing)? + "\n", page.html()];
+        for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
+            write_bytes(self.output.join(name), text.as_bytes())?;
+        }
+        if self.json {
+            print::json(&end)?;
+        } else {
+            let video = fs::metadata(self.output.join(VIDEO));
+            let video = video
+                .map_or(String::new(), |file| format!(", and a video of {:.0} MB", 1e-6 * file.len() as f64));
+            print::text(&format!(
+                "outcome    {} after {:.1} s and {:.0} m\n\
+                 clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
+                 way        {:.1} m flown, {:.1} % of it towards the goal\n\
+                 control    {:.1} °/s of roll (root mean square)\n\
+                 cues       {:.1} % of the frames without one\n\
+                 speed      {}\n\
+                 log        in {}{video}",
+                summary.outcome,
+                summary.time_s,
+                summary.progress_m,
+                summary.least_clearance_m,
+                summary.low_clearance_m,
+                summary.path_m,
+                100.0 * summary.efficiency(),
+                summary.roll_rate_rad_s.to_degrees(),
+                100.0 * summary.invalid,
+                timing.text(),
+                self.output.display(),
+            ))?;
+        }
+        Ok(match summary.outcome {
+            flight::Outcome::Reached => Outcome::Done,
+            flight::Outcome::Crashed | flight::Outcome::LeftBand | flight::Outcome::TimedOut => {
+                Outcome::CheckFailed
+            }
+        })
+    }
+}
+
+impl Recorder {
+    /// Flies to the end and keeps every frame.
+    fn fly(&mut self, flight: &mut Flight, mut video: Option<&mut Video<'_>>) -> Result<Summary> {
+        loop {
+            let ended = flight.step(|seen| {
+                self.add(seen);
+                video.as_mut().map_or(Ok(()), |video| video.add(seen))
+            })?;
+            self.costs.add(flight.cost());
+            if let Some(summary) = ended {
+                return Ok(summary);
+            }
+        }
+    }
+
+    fn add(&mut self, seen: &Seen<'_>) {
+        self.records.push(seen.record.clone());
+        if let Some(cue) = seen.cue {
+            self.costs.add_latency(cue.latency);
+        }
+        self.say(seen.record);
+    }
+
+    /// A bar where there is a terminal, else a line for each second of flight.
+    fn say(&self, record: &Record) {
+        let state = match &record.invalid {
+            Some(why) => format!("no cue: {why}"),
+            None => match record.contact_s {
+                Some(contact_s) => format!("contact in {contact_s:.1} s"),
+                None => "nothing ahead".to_owned(),
+            },
+        };
+        if !self.bar.is_hidden() {
+            self.bar.set_position(record.progress_m.max(0.0) as u64);
+            self.bar.set_message(state);
+        } else if self.talks && (record.time_s % 1.0) < FRAME_S {
+            print::note(format_args!(
+                "{:.0} s, {:.0} m on the way, {:.1} m clear, bank {:+.0}°, {state}",
+                record.time_s,
+                record.progress_m,
+                record.clearance_m,
+                record.roll_pitch_yaw_rad[0].to_degrees(),
+            ));
+        }
+    }
+}
+
+/// Removes a file if it is there.
+fn remove(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(Error::io(path, source)),
+        _ => Ok(()),
+    }
+}
+
+/// What computed, for the reader; without pictures nothing but the CPU does.
+fn computed_on(names: Option<&[String; 2]>) -> String {
+    match names {
+        None => Backend::Cpu.name(),
+        Some([sight, flow]) if sight == flow => flow.clone(),
+        Some([sight, flow]) => format!("{flow}, pictures on {sight}"),
+    }
+}
+
+/// A bar over the metres of the way, on standard error where that is a terminal.
+fn progress(course: &Course) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} m, {elapsed}, {msg}");
+    ProgressBar::new(course.length_m.ceil() as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

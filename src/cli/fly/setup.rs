@@ -1,0 +1,98 @@
+//! What flies, and in what air: for all flights of a command.
+
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::sim::flight::{Body, FlightConfig};
+use crate::sim::vehicle::{Gusts, TurnParams, VaneErrors};
+
+/// What flies, and in what air.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Vehicle and air")]
+pub(in crate::cli) struct SetupArgs {
+    /// What flies
+    #[arg(long, value_enum, default_value_t = BodyArg::Airframe)]
+    body: BodyArg,
+    /// Where the air moves to, m/s north, east and down
+    #[arg(long, value_name = "N,E,D", allow_hyphen_values = true, default_value = "0,0,0")]
+    wind: Ned,
+    /// Gusts on top of it
+    #[arg(long, value_enum, default_value_t = GustsArg::None)]
+    gusts: GustsArg,
+    /// Take the direction of motion from vanes, in place of the view
+    #[arg(long)]
+    vanes: bool,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum BodyArg {
+    /// A rigid body with an inner loop
+    Airframe,
+    /// A point in coordinated turns
+    Turn,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum GustsArg {
+    /// Still air, but for the wind
+    None,
+    /// Light turbulence at 50 m of height
+    Light,
+    /// Moderate turbulence at 50 m of height
+    Moderate,
+}
+
+/// Three numbers with commas between them.
+#[derive(Clone, Copy, Debug)]
+struct Ned(DVec3);
+
+impl FromStr for Ned {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || Error::parameter("wind", format_args!("{text:?}"), "three speeds as N,E,D");
+        let numbers: Vec<f64> =
+            text.split(',').map(|part| part.trim().parse().map_err(|_| wrong())).collect::<Result<_>>()?;
+        let axes: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;
+        Some(DVec3::from(axes)).filter(|wind| wind.is_finite()).map(Self).ok_or_else(wrong)
+    }
+}
+
+impl SetupArgs {
+    /// The configuration that all flights begin with.
+    pub(in crate::cli) fn config(&self) -> FlightConfig {
+        FlightConfig {
+            body: match self.body {
+                BodyArg::Airframe => Body::default(),
+                BodyArg::Turn => Body::Turn(TurnParams::default()),
+            },
+            wind_ned_m_s: self.wind.0,
+            gusts: match self.gusts {
+                GustsArg::None => None,
+                GustsArg::Light => Some(Gusts::LIGHT),
+                GustsArg::Moderate => Some(Gusts::MODERATE),
+            },
+            vanes: self.vanes.then(VaneErrors::default),
+            ..FlightConfig::default()
+        }
+    }
+
+    /// What was chosen, to read.
+    pub(in crate::cli) fn text(&self) -> String {
+        let (body, gusts, vanes) = self.names();
+        let [north, east, down] = self.wind.0.to_array();
+        let vanes = if vanes { "vanes" } else { "no vanes" };
+        format!("body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}")
+    }
+
+    /// The value of `--body`, `--gusts` and `--vanes`.
+    pub(in crate::cli) fn names(&self) -> (String, String, bool) {
+        let name = |value: Option<clap::builder::PossibleValue>| {
+            value.map(|value| value.get_name().to_owned()).unwrap_or_default()
+        };
+        (name(self.body.to_possible_value()), name(self.gusts.to_possible_value()), self.vanes)
+    }
+}

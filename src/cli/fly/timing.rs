@@ -1,0 +1,114 @@
+//! What the frames of a flight cost: it differs from run to run.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use crate::sim::flight::Cost;
+
+/// From frame to frame at 30 Hz.
+const REAL_TIME_MS: f64 = 33.0;
+
+/// The costs of all frames so far.
+#[derive(Default)]
+pub(super) struct Costs {
+    frames: Vec<Cost>,
+    latencies: Vec<Duration>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Timing {
+    /// What drew the pictures and what computed the flow; null where there are no pictures.
+    backends: Option<[String; 2]>,
+    frames: usize,
+    /// Frames that took longer than a camera of 30 Hz gives them.
+    over_33_ms: usize,
+    total_ms: Spread,
+    sight_ms: Spread,
+    pipeline_ms: Spread,
+    steer_ms: Spread,
+    vehicle_ms: Spread,
+    /// From a picture's submission until its cue was there; null where there are none.
+    latency_ms: Option<Spread>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Spread {
+    median: f64,
+    p99: f64,
+}
+
+impl Costs {
+    pub(super) fn add(&mut self, cost: Cost) {
+        self.frames.push(cost);
+    }
+
+    pub(super) fn add_latency(&mut self, latency: Duration) {
+        self.latencies.push(latency);
+    }
+
+    /// What each frame cost, in their order.
+    pub(super) fn frames(&self) -> &[Cost] {
+        &self.frames
+    }
+
+    pub(super) fn timing(&self, backends: Option<[String; 2]>) -> Timing {
+        let part =
+            |part: fn(&Cost) -> Duration| Spread::of(self.frames.iter().map(part)).unwrap_or(Spread::NONE);
+        Timing {
+            backends,
+            frames: self.frames.len(),
+            over_33_ms: self.frames.iter().filter(|cost| milliseconds(cost.total()) > REAL_TIME_MS).count(),
+            total_ms: part(Cost::total),
+            sight_ms: part(|cost| cost.sight),
+            pipeline_ms: part(|cost| cost.pipeline),
+            steer_ms: part(|cost| cost.steer),
+            vehicle_ms: part(|cost| cost.vehicle),
+            latency_ms: Spread::of(self.latencies.iter().copied()),
+        }
+    }
+}
+
+impl Timing {
+    /// What is said of it beside the summary.
+    pub(super) fn text(&self) -> String {
+        let Spread { median, p99 } = self.total_ms;
+        format!(
+            "{median:.2} ms a frame, p99 {p99:.2} ms, {} of {} over {REAL_TIME_MS} ms",
+            self.over_33_ms, self.frames
+        )
+    }
+}
+
+impl Spread {
+    const NONE: Self = Self { median: 0.0, p99: 0.0 };
+
+    fn of(times: impl Iterator<Item = Duration>) -> Option<Self> {
+        let mut sorted: Vec<f64> = times.map(milliseconds).collect();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| sorted.get((sorted.len().max(1) as f64 * share) as usize).copied();
+        Some(Self { median: at(0.5)?, p99: at(0.99)? })
+    }
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_and_late_frames_are_counted() {
+        let mut costs = Costs::default();
+        for ms in 0..100 {
+            costs.add(Cost { sight: Duration::from_millis(ms), ..Cost::default() });
+        }
+        let timing = costs.timing(None);
+        assert_eq!((timing.frames, timing.over_33_ms), (100, 66));
+        assert_eq!((timing.sight_ms.median, timing.total_ms.p99), (50.0, 99.0));
+        assert_eq!(timing.pipeline_ms.p99, 0.0);
+        assert!(timing.latency_ms.is_none());
+    }
+}

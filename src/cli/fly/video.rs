@@ -1,0 +1,39 @@
+//! A flight's video, written while it is flown.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::Result;
+use crate::frame::{PixelFormat, Y4mWriter};
+use crate::report::flight::FlightVideo;
+use crate::sim::flight::Seen;
+
+/// Every third frame of a flight is drawn: all of them would take three times the space and the time.
+const EVERY: u64 = 3;
+/// Frames in so many seconds.
+const RATE: (u32, u32) = (10, 1);
+
+/// A video that is being written.
+pub(super) struct Video<'a> {
+    drawing: FlightVideo,
+    writer: Y4mWriter<&'a mut dyn Write>,
+}
+
+impl<'a> Video<'a> {
+    /// `path` is the name for error messages.
+    pub(super) fn new(drawing: FlightVideo, out: &'a mut dyn Write, path: &Path) -> Result<Self> {
+        let writer = Y4mWriter::new(out, path, drawing.size(), PixelFormat::Rgb8, RATE)?;
+        Ok(Self { drawing, writer })
+    }
+
+    pub(super) fn add(&mut self, seen: &Seen<'_>) -> Result<()> {
+        if seen.record.frame % EVERY == 0 {
+            self.writer.write_frame(&self.drawing.draw(seen)?.frame()?)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> Result<()> {
+        self.writer.finish().map(|_| ())
+    }
+}

@@ -1,0 +1,232 @@
+//! `viewsphere simulate`: a data set of a flight through a made-up world, with its truth.
+
+mod flown;
+mod folder;
+mod readme;
+mod truth;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use self::flown::Flown;
+use self::folder::Folder;
+use self::truth::{Truth, Writer};
+use super::backend::BackendArgs;
+use super::{Outcome, print};
+use crate::camera::{self, Camera, Format};
+use crate::error::{Error, Result};
+use crate::frame::{Size, picture};
+use crate::imu::write_log;
+use crate::sim::flight::camera;
+use crate::sim::vehicle::GyroErrors;
+use crate::sim::{Course, CourseKind, Random};
+use crate::sim::{Sight, SightConfig};
+
+/// Steps of the vehicle in a second: of these every so manieth is a frame.
+const STEPS_PER_S: u32 = 240;
+
+/// Make a data set: a flight through a world, its pictures, its gyro and the truth.
+///
+/// The flight is steered by true depth, so that it is one that an aircraft could fly. Beside frames/ the folder holds
+/// times.csv, camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv and a README.md
+/// that says what each file is, in which units and frames, and how it was made. Truth, a file a frame: flow/ (.flo, pixels to
+/// the next frame, unknown where that does not show it), depth/ (.npy, metres along the ray), nearness/ (1/m), divergence/
+/// and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by azimuth and elevation, see --grid).
+///
+/// The same command gives the same files on the same adapter. They are written into FOLDER.partial, which is renamed at the
+/// end; with --force what was there is FOLDER.replaced for that moment. Either is removed where an earlier run that did not
+/// end has left it.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere simulate --world city --seed 3 --seconds 20 -o set/
+  viewsphere simulate --world forest:density=1/64 --speed 8 --size 320x240 --truth flow,depth,spherical -o set/
+  viewsphere simulate --world wall --truth grid --grid 64x16 -o set/
+  viewsphere flow 'set/frames/%06d.png' -o estimate/ && viewsphere eval --truth set/flow/000010.flo estimate/000010.flo
+  viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
+    --gyro set/gyro.csv --camera-from-gyro frd")]
+pub(super) struct Simulate {
+    /// The world, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
+    /// dead-end, wires
+    #[arg(long, value_name = "WORLD", default_value = "city")]
+    world: CourseKind,
+    /// What the world and all that is random begin with
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// How long the flight is, above 0 and at most 600; it ends earlier at the goal
+    #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Airspeed in m/s, 0.1 to 1000
+    #[arg(long, value_name = "M_S", default_value_t = 12.0, allow_negative_numbers = true)]
+    speed: f64,
+    /// Size of the pictures
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    size: Size,
+    /// The camera that takes them [default: one of 96° without its lens, with barrel distortion]
+    #[arg(long, value_name = "FILE", conflicts_with = "size")]
+    camera: Option<PathBuf>,
+    /// Frames a second: a divisor of 240
+    #[arg(long, value_name = "RATE", default_value_t = 30)]
+    fps: u32,
+    /// Which truths to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
+    truth: Vec<Truth>,
+    /// Azimuths and elevations of the grid of rays over the field of view
+    #[arg(long, value_name = "AZxEL", default_value = "32x24")]
+    grid: Size,
+    /// Standard deviation of the noise of the pictures, in gray levels, 0 to 64
+    #[arg(long, value_name = "LEVELS", default_value_t = 2.0, allow_negative_numbers = true)]
+    noise: f64,
+    /// Density of the gyro's white noise, rad/s/√Hz, 0 or above [default: 3.4e-4]
+    #[arg(long, value_name = "DENSITY", allow_negative_numbers = true)]
+    gyro_noise: Option<f64>,
+    /// What the gyro says too much about each axis at the start, degrees a second
+    #[arg(long, value_name = "DEG_S", default_value_t = 0.0, allow_negative_numbers = true)]
+    gyro_bias: f64,
+    /// Folder to write into; there must be nothing in it
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Replace what an earlier run has written there
+    #[arg(long)]
+    force: bool,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+/// What is said at the end.
+#[derive(Serialize)]
+struct Summary {
+    folder: PathBuf,
+    world: String,
+    seed: u64,
+    frames: usize,
+    fps: u32,
+    /// Seconds from the first frame to the last.
+    duration_s: f64,
+    /// How the flight ended, if it did before the time was over.
+    ended: Option<&'static str>,
+    path_m: f64,
+    least_clearance_m: f64,
+    bytes: u64,
+}
+
+impl Simulate {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        let steps = self.check()?;
+        let camera = match &self.camera {
+            Some(path) => camera::read(path)?,
+            None => camera(self.size),
+        };
+        let course = self.world.course(self.seed)?;
+        let errors = self.gyro_errors();
+        errors.validate()?;
+        let writer = Writer::new(&course.world, &camera, &self.truth, self.grid)?;
+        let mut folder = Folder::new(&self.output, self.force)?;
+        let most = (self.seconds * f64::from(self.fps)).round().max(1.0) as usize;
+        let flown = Flown::new(&course, self.speed, steps, most)?;
+        let bar = progress(flown.frames.len());
+        let written = self.write(&folder, &course, &camera, writer, &flown, &bar);
+        bar.finish_and_clear();
+        written?;
+        let mut random = Random::new(self.seed);
+        write_log(folder.path("gyro.csv"), &flown.gyro(&errors, random.next_u64())?)?;
+        write_log(folder.path("gyro_true.csv"), &flown.gyro(&GyroErrors::NONE, 0)?)?;
+        flown.write_tables(&folder)?;
+        readme::write(&folder, self, &course, &camera, &flown)?;
+        folder.finish()?;
+        self.say(&course, &flown, &folder)?;
+        Ok(Outcome::Done)
+    }
+
+    /// Steps from frame to frame, if all is in range.
+    fn check(&self) -> Result<usize> {
+        if !(self.seconds > 0.0 && self.seconds <= 600.0) {
+            return Err(Error::parameter("--seconds", self.seconds, "above 0 and at most 600"));
+        }
+        if !(0.1..=1e3).contains(&self.speed) {
+            return Err(Error::parameter("--speed", self.speed, "0.1 to 1000"));
+        }
+        if self.fps == 0 || !STEPS_PER_S.is_multiple_of(self.fps) {
+            let expected = format!("a divisor of {STEPS_PER_S}");
+            return Err(Error::parameter("--fps", self.fps, expected));
+        }
+        Ok((STEPS_PER_S / self.fps) as usize)
+    }
+
+    fn gyro_errors(&self) -> GyroErrors {
+        let default = GyroErrors::default();
+        GyroErrors {
+            noise_rad_s_rthz: self.gyro_noise.unwrap_or(default.noise_rad_s_rthz),
+            bias_rad_s: glam::DVec3::splat(self.gyro_bias.to_radians()),
+            ..default
+        }
+    }
+
+    /// Writes the camera, the pictures, and the truth beside them.
+    fn write(
+        &self,
+        folder: &Folder,
+        course: &Course,
+        camera: &Camera,
+        writer: Writer<'_>,
+        flown: &Flown,
+        bar: &ProgressBar,
+    ) -> Result<()> {
+        let config = SightConfig { noise_levels: self.noise, ..SightConfig::default() };
+        let mut sight = Sight::new(self.backend.open()?, camera, &course.world, &config)?;
+        camera::write(folder.path("camera.yaml"), camera, Format::OpenCv)?;
+        folder.make("frames")?;
+        self.truth.iter().try_for_each(|truth| folder.make(truth.folder()))?;
+        let seed = Random::new(self.seed).fork(1).next_u64();
+        for (number, state) in flown.frames.iter().enumerate() {
+            let image = sight.look(&state.camera_pose(), seed.wrapping_add(number as u64))?;
+            picture::write_png(folder.path(&format!("frames/{number:06}.png")), image)?;
+            writer.write(folder, number, state, flown.frames.get(number + 1))?;
+            bar.inc(1);
+        }
+        Ok(())
+    }
+
+    fn say(&self, course: &Course, flown: &Flown, folder: &Folder) -> Result<()> {
+        let summary = Summary {
+            folder: self.output.clone(),
+            world: course.name.clone(),
+            seed: self.seed,
+            frames: flown.frames.len(),
+            fps: self.fps,
+            duration_s: (flown.frames.len() - 1) as f64 / f64::from(self.fps),
+            ended: flown.ended.map(flown::ended),
+            path_m: flown.path_m(),
+            least_clearance_m: flown.least_clearance_m(course),
+            bytes: folder.bytes()?,
+        };
+        if self.json {
+            return print::json(&summary);
+        }
+        let ended = summary.ended.map_or(String::new(), |ended| format!(", then {ended}"));
+        print::text(&format!(
+            "world   {}, seed {}\nflight  {:.2} s, {:.1} m{ended}; nearest surface at {:.2} m\n\
+             set     {} frames, {:.1} MB in {}",
+            summary.world,
+            summary.seed,
+            summary.duration_s,
+            summary.path_m,
+            summary.least_clearance_m,
+            summary.frames,
+            summary.bytes as f64 / 1e6,
+            summary.folder.display(),
+        ))
+    }
+}
+
+/// A bar on standard error, where that is a terminal.
+fn progress(frames: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left");
+    ProgressBar::new(frames as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

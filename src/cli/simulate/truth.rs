@@ -1,0 +1,111 @@
+//! What is known exactly of each frame.
+
+use clap::ValueEnum;
+
+use super::flown::motion;
+use super::folder::Folder;
+use crate::camera::{Camera, Lens, View};
+use crate::error::Result;
+use crate::frame::{Plane, Size, flo, npy, write_bytes};
+use crate::sim::vehicle::VehicleState;
+use crate::sim::{RayTable, Seen, World, displacement, ray_grid, sightings};
+use crate::sphere::Grid;
+
+/// What can be written beside a frame.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Truth {
+    /// Pixels to the next frame, .flo
+    Flow,
+    /// Metres along each pixel's ray, .npy
+    Depth,
+    /// One over that, 1/m, .npy
+    Nearness,
+    /// Divergence of the flow on the view sphere, 1/s, .npy
+    Divergence,
+    /// Flow on the view sphere in the camera's frame, rad/s, .npy
+    Spherical,
+    /// Metres along rays at even azimuths and elevations, .npy
+    Grid,
+}
+
+impl Truth {
+    /// The folder that it is in.
+    pub(super) fn folder(self) -> &'static str {
+        match self {
+            Self::Flow => "flow",
+            Self::Depth => "depth",
+            Self::Nearness => "nearness",
+            Self::Divergence => "divergence",
+            Self::Spherical => "spherical",
+            Self::Grid => "grid",
+        }
+    }
+}
+
+/// Writes truths.
+pub(super) struct Writer<'a> {
+    world: &'a World,
+    camera: &'a Camera,
+    truths: &'a [Truth],
+    rays: RayTable,
+    grid: Grid,
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(world: &'a World, camera: &'a Camera, truths: &'a [Truth], grid: Size) -> Result<Self> {
+        let grid = grid_over(camera, grid.validate()?)?;
+        Ok(Self { world, camera, truths, rays: RayTable::new(camera)?, grid })
+    }
+
+    /// Writes the truths of a frame. There is no flow without a next one.
+    pub(super) fn write(
+        &self,
+        folder: &Folder,
+        number: usize,
+        state: &VehicleState,
+        next: Option<&VehicleState>,
+    ) -> Result<()> {
+        let (pose, motion) = (state.camera_pose(), motion(state));
+        let per_pixel = |truth: &Truth| !matches!(truth, Truth::Flow | Truth::Grid);
+        let seen = match self.truths.iter().any(per_pixel) {
+            true => sightings(self.world, &self.rays, &pose),
+            false => Vec::new(),
+        };
+        let size = self.camera.size;
+        let plane = |of: &dyn Fn(&Seen) -> f64| {
+            let data = seen.iter().map(|seen| seen.as_ref().map_or(f32::NAN, |seen| of(seen) as f32));
+            npy::encode_plane(&Plane { size, data: data.collect() })
+        };
+        for truth in self.truths {
+            let bytes = match truth {
+                Truth::Flow => {
+                    let Some(next) = next else { continue };
+                    let to = next.camera_pose();
+                    flo::encode(&displacement(self.world, self.camera, &self.rays, &pose, &to)?)?
+                }
+                Truth::Depth => plane(&|seen| seen.nearness_per_m.recip())?,
+                Truth::Nearness => plane(&|seen| seen.nearness_per_m)?,
+                Truth::Divergence => plane(&|seen| seen.divergence_per_s(&motion))?,
+                Truth::Spherical => {
+                    let flow = |seen: &Option<Seen>| {
+                        seen.map_or([f32::NAN; 3], |seen| seen.flow_rad_s(&motion).as_vec3().to_array())
+                    };
+                    npy::encode_triples(size, &seen.iter().map(flow).collect::<Vec<_>>())?
+                }
+                Truth::Grid => npy::encode_plane(&ray_grid(self.world, &pose, &self.grid)?)?,
+            };
+            let extension = if *truth == Truth::Flow { "flo" } else { "npy" };
+            write_bytes(folder.path(&format!("{}/{number:06}.{extension}", truth.folder())), &bytes)?;
+        }
+        Ok(())
+    }
+}
+
+/// Even azimuths and elevations over all that a camera sees.
+pub(super) fn grid_over(camera: &Camera, Size { width, height }: Size) -> Result<Grid> {
+    let ideal = match camera.lens {
+        Lens::NONE => *camera,
+        _ => camera.ideal(camera.size, View::KeepAll)?,
+    };
+    Ok(Grid { columns: width as usize, rows: height as usize, ..Grid::over(&ideal, [1, 1])? })
+}

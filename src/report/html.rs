@@ -1,0 +1,105 @@
+//! Pages that need nothing beside themselves.
+
+use std::fmt::Display;
+
+/// What every page looks like, in light and in dark.
+const STYLE: &str = include_str!("page.css");
+
+/// Text as it may stand in HTML and SVG, also in an attribute.
+pub(super) fn escape(text: impl Display) -> String {
+    let mut escaped = String::new();
+    for character in text.to_string().chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            _ => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+/// A page of a title, which is escaped here, and a body, which is not.
+pub(super) fn page(title: &str, body: &str) -> String {
+    let title = escape(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n{body}</main>\n</body>\n</html>\n"
+    )
+}
+
+/// A figure to be seen at once: what it is, and its value.
+pub(super) fn tile(name: &str, value: impl Display, kind: &str) -> String {
+    let (name, value, kind) = (escape(name), escape(value), escape(kind));
+    format!("<div class=\"tile {kind}\"><span>{name}</span><b>{value}</b></div>\n")
+}
+
+/// A part of a page: a heading, a line about it, and what stands below, which is not escaped.
+pub(super) fn section(heading: &str, about: &str, content: &str) -> String {
+    let (heading, about) = (escape(heading), escape(about));
+    format!("<section>\n<h2>{heading}</h2>\n<p>{about}</p>\n{content}</section>\n")
+}
+
+/// Names and values, all escaped here.
+pub(super) fn figures(rows: &[(&str, String)]) -> String {
+    let row = |(name, value): &(&str, String)| {
+        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value))
+    };
+    format!("<table class=\"figures\">\n{}</table>\n", rows.iter().map(row).collect::<String>())
+}
+
+/// Whether every element is closed in its turn, and every `&` begins an entity: what a browser would repair in silence.
+#[cfg(test)]
+pub(super) fn check(page: &str) -> Result<(), String> {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = page.split_once("</style>").map_or(page, |(_, body)| body);
+    if rest.len() < page.len() {
+        open.extend(["html", "head"]);
+    }
+    for (at, _) in rest.match_indices('&') {
+        let entity: String =
+            rest[at + 1..].chars().take_while(|c| c.is_alphanumeric() || *c == '#').collect();
+        if !["amp", "lt", "gt", "quot", "#39"].contains(&entity.as_str()) {
+            return Err(format!("&{entity}"));
+        }
+    }
+    while let Some((_, tail)) = rest.split_once('<') {
+        let Some((tag, tail)) = tail.split_once('>') else { return Err(format!("<{tail}")) };
+        rest = tail;
+        if let Some(name) = tag.strip_prefix('/') {
+            if open.pop() != Some(name) {
+                return Err(format!("</{name}> where {open:?} are open"));
+            }
+        } else if tag.matches('"').count() % 2 != 0 || tag.contains('<') {
+            return Err(format!("<{tag}>"));
+        } else if !tag.ends_with('/') && !tag.starts_with('!') {
+            open.push(tag.split_whitespace().next().unwrap_or_default());
+        }
+    }
+    if open.is_empty() { Ok(()) } else { Err(format!("{open:?} are not closed")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_cannot_become_markup() {
+        let evil = "<script>alert(\"x\")</script> & 'more'";
+        let text = page(evil, &figures(&[("a<b", evil.to_owned())]));
+        assert!(!text.contains("<script") && text.contains("&lt;script&gt;alert(&quot;x&quot;)"), "{text}");
+        assert_eq!(check(&text), Ok(()));
+        assert_eq!(check(&page("a", &section("b", "c", &tile("d", 1, "good")))), Ok(()));
+    }
+
+    #[test]
+    fn what_is_not_closed_is_found() {
+        for wrong in ["<p>", "<p></b></p>", "a & b", "<p class=\"a></p>", "</p>", "<a<b>"] {
+            assert!(check(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(check("<p>a &lt; b<br/></p>"), Ok(()));
+    }
+}
