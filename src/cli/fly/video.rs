@@ -27,7 +27,7 @@ impl<'a> Video<'a> {
     }
 
     pub(super) fn add(&mut self, seen: &Seen<'_>) -> Result<()> {
-        if seen.record.frame % EVERY == 0 {
+        if seen.record.frame.is_multiple_of(EVERY) {
             self.writer.write_frame(&self.drawing.draw(seen)?.frame()?)?;
         }
         Ok(())
