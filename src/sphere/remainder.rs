@@ -31,7 +31,12 @@ pub fn remaining_turn_rad_s(sectors: &Sectors) -> Option<DVec3> {
     if seen.len() < LEAST_SECTORS {
         return None;
     }
-    let mut weights: Vec<f64> = seen.iter().map(|(.., weight)| *weight).collect();
+    // Something fast that moves by itself must not lead the first round astray.
+    let mut speeds: Vec<f64> = seen.iter().map(|(_, flow, _)| flow.length()).collect();
+    speeds.sort_by(f64::total_cmp);
+    let usual = speeds[speeds.len() / 2].max(1e-4);
+    let first = |flow: &DVec3, weight: f64| weight / (1.0 + flow.length_squared() / (usual * usual));
+    let mut weights: Vec<f64> = seen.iter().map(|(_, flow, weight)| first(flow, *weight)).collect();
     let mut turn = DVec3::ZERO;
     for _ in 0..ROUNDS {
         let moment = seen.iter().zip(&weights).fold(DMat3::ZERO, |sum, ((p, flow, _), weight)| {
@@ -60,8 +65,8 @@ pub fn remaining_turn_rad_s(sectors: &Sectors) -> Option<DVec3> {
         let mut sorted = misfits.clone();
         sorted.sort_by(f64::total_cmp);
         let typical = (2.0 * sorted[sorted.len() / 2]).max(1e-4);
-        for ((weight, (.., first)), misfit) in weights.iter_mut().zip(&seen).zip(misfits) {
-            *weight = first / (1.0 + (misfit / typical).powi(2)).powi(2);
+        for ((weight, (_, flow, trust)), misfit) in weights.iter_mut().zip(&seen).zip(misfits) {
+            *weight = first(flow, *trust) / (1.0 + (misfit / typical).powi(2)).powi(2);
         }
     }
     turn.is_finite().then_some(turn)

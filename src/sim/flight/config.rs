@@ -28,7 +28,8 @@ pub enum Sensor {
     Images,
 }
 
-/// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow with a window of 21 px.
+/// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow in pictures of 320×240: the spread
+/// of its errors on rendered walls is 0.05 to 0.07 px, and its window of 15 px weighs about as a Gaussian of 3.5 px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowNoise {
     /// Standard deviation of the Gaussian that it is blurred with, in pixels, above 0.
@@ -41,7 +42,7 @@ pub struct FlowNoise {
 
 impl Default for FlowNoise {
     fn default() -> Self {
-        Self { blur_px: 7.0, white_px: 0.15, relative: 0.03 }
+        Self { blur_px: 3.5, white_px: 0.075, relative: 0.03 }
     }
 }
 
