@@ -227,7 +227,7 @@ fn the_same_seed_gives_the_same_log_and_another_one_another() {
         ("depth", vec!["--sensor", "depth"]),
         ("flow", vec!["--truth-flow", "--gusts", "light", "--vanes"]),
         ("noisy", vec!["--sensor", "noisy-flow", "--danger", "blend"]),
-        ("images", vec!["--backend", "cpu", "--size", "240x180", "--fault", "dropped=0.2:0.5"]),
+        ("images", vec!["--backend", "cpu", "--size", "240x180", "--fault", "dropped=0.2:0.5", "--measure"]),
     ];
     for (name, args) in flights {
         let twice = ["a", "b", "c"].map(|run| {
@@ -276,6 +276,31 @@ fn pictures_that_fail_are_said_in_the_log() {
 }
 
 #[test]
+fn what_is_measured_changes_nothing_of_the_flight() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["--backend", "cpu", "--size", "160x120", "--seed", "8", "--quiet"];
+    let plain = fly(folder.path(), "plain", &args);
+    let ended = fly(folder.path(), "measured", &[&args[..], &["--measure", "--picture-at", "1.5"]].concat());
+    assert_eq!(plain.code, ended.code, "{}", ended.stderr);
+    assert!(ended.stdout.contains("divergence at 1.50 s, full colour at ±2 /s"), "{}", ended.stdout);
+    let picture = viewsphere::frame::picture::read(folder.path().join("measured/divergence.png")).unwrap();
+    // Two pictures of 40 by 30 cells, 4 pixels each, 8 pixels between them and a scale of 30 below.
+    assert_eq!(picture.size, "328x150".parse().unwrap());
+    assert!(!folder.path().join("plain/divergence.png").exists());
+    let [(header, frames, end), (other_header, mut measured, mut measured_end)] =
+        ["plain", "measured"].map(|name| log(folder.path(), name));
+    assert_eq!(header, other_header);
+    for frame in &mut measured {
+        let figures = std::mem::take(&mut frame["measured"]);
+        assert_eq!(figures.is_null(), frame["invalid"].is_string(), "{frame}");
+        assert!(figures.is_null() || figures["trusted"].as_f64().unwrap() > 0.1, "{figures}");
+    }
+    assert!(measured_end["measured"]["trusted_error_px"].as_f64().unwrap() < 0.3, "{measured_end}");
+    measured_end["measured"] = Value::Null;
+    assert!((frames, end) == (measured, measured_end));
+}
+
+#[test]
 fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     let fly = |args: &[&str], words: &[&str]| {
         refused(&[&["fly", "--backend", "cpu", "--world", WALL], args].concat(), words);
@@ -299,5 +324,8 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--world-file", "a.json"], &["--world-file", "--world"]);
     refused(&["fly", "--world-file", "a.json", "--seed", "1"], &["--world-file", "--seed"]);
     refused(&["fly", "--world-file", "a.json", "--save-world", "b.json"], &["--save-world"]);
+    fly(&["--measure", "--sensor", "flow"], &["measure", "the sensor flow", "images"]);
+    fly(&["--picture-at", "1"], &["--measure"]);
+    fly(&["--measure", "--picture-at", "NaN"], &["--picture-at", "NaN"]);
     fly(&["--adapter", "x"], &["--adapter", "--backend cpu"]);
 }

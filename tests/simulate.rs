@@ -107,6 +107,25 @@ fn a_set_is_whole_and_its_truths_agree() {
 }
 
 #[test]
+fn pictures_of_truths_have_their_colours_and_a_scale() {
+    let (folder, said) = simulated(&["--truth", "nearness,divergence,depth", "--pictures", "--speed", "10"]);
+    let set = folder.path().join("set");
+    assert_eq!(said["full_colour"], "nearness ±0.1000 /m, divergence ±2.0000 /s");
+    assert!(fs::read_to_string(set.join("README.md")).unwrap().contains("nearness ±0.1000 /m"));
+    for (name, files) in [("nearness", 24), ("divergence", 24), ("depth", 12)] {
+        assert_eq!(count(&set.join(name)), files, "{name}");
+    }
+    let nearness = npy::read_plane(set.join("nearness/000005.npy")).unwrap();
+    let image = picture::read(set.join("nearness/000005.png")).unwrap();
+    assert_eq!(image.size, nearness.size);
+    for (pixel, nearness) in image.data.as_chunks::<3>().0.iter().zip(&nearness.data) {
+        // The sky is white, and what is near is red.
+        let expected = if *nearness == 0.0 { pixel == &[255; 3] } else { pixel[1] <= pixel[0] };
+        assert!(expected, "{pixel:?} {nearness}");
+    }
+}
+
+#[test]
 fn the_other_commands_read_a_set() {
     let (folder, _) = simulated(&[]);
     let run = |args: &[&str]| run(folder.path(), args).unwrap();
@@ -167,6 +186,8 @@ fn the_same_command_makes_the_same_set_and_spares_what_is_there() {
 #[test]
 fn what_is_out_of_range_is_refused_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
+    let text = run(folder.path(), &["simulate", "-o", "set", "--pictures"]).unwrap_err();
+    assert!(text.contains("--pictures is on, expected divergence or nearness in --truth"), "{text}");
     for (flag, value, expected) in [
         ("--seconds", "0", "--seconds is 0, expected above 0 and at most 600"),
         ("--seconds", "nan", "--seconds is NaN"),

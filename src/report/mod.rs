@@ -3,6 +3,7 @@
 mod campaign;
 mod canvas;
 mod colours;
+mod divergence;
 pub mod flight;
 mod font;
 mod footprint;
@@ -12,4 +13,5 @@ mod plot;
 mod straight;
 
 pub use campaign::{CampaignRow, campaign_page};
+pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
 pub use overlay::Overlay;

@@ -2,12 +2,14 @@
 
 use serde::Serialize;
 
+use super::measured::Figures;
 use super::setup::SetupArgs;
 use crate::cli::print;
 use crate::error::Result;
 use crate::sim::Course;
 use crate::sim::campaign::{Faults, fingerprint};
 use crate::sim::flight::{FRAME_S, Flight, Record, Summary};
+use crate::sphere::Fields;
 use crate::steer::{Command, Source};
 
 /// What the flight was: all that it takes to repeat it.
@@ -58,6 +60,7 @@ struct Frame<'a> {
     heading_error_rad: Option<f64>,
     contact_s: Option<f64>,
     true_contact_s: Option<f64>,
+    measured: Option<Figures>,
     source: &'static str,
     command: Angles,
     danger: Option<f64>,
@@ -84,6 +87,7 @@ pub(super) struct End {
     invalid: f64,
     offset_std_m: Option<f64>,
     offset_mean_m: Option<f64>,
+    measured: Option<Figures>,
 }
 
 /// The line that a log begins with.
@@ -91,9 +95,10 @@ pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[Stri
     let (course, config): (&Course, _) = (flight.course(), flight.config());
     let (body, gusts, vanes) = setup.names();
     let size = config.camera.size;
-    // What is read back to be drawn is no part of the flight.
+    // What is read back to be drawn and what is only measured are no part of the flight.
     let mut flown = config.clone();
     flown.pipeline.engine.read_flow = false;
+    (flown.measure, flown.pipeline.fields) = (false, Fields::default());
     print::one_line(&Header {
         viewsphere: env!("CARGO_PKG_VERSION"),
         fingerprint: fingerprint(&(&flown, course)),
@@ -139,6 +144,7 @@ pub(super) fn frame(record: &Record) -> Result<String> {
         heading_error_rad: record.heading_error_rad,
         contact_s: record.contact_s,
         true_contact_s: record.true_contact_s,
+        measured: record.measured.map(Figures::from),
         source: match record.source {
             Source::Cue => "cue",
             Source::Held => "held",
@@ -171,6 +177,7 @@ impl From<&Summary> for End {
             invalid: summary.invalid,
             offset_std_m,
             offset_mean_m,
+            measured: summary.measured.map(Figures::from),
         }
     }
 }

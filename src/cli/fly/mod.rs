@@ -1,6 +1,7 @@
 //! `viewsphere fly`: a flight through a made-up world on what the view says.
 
 mod log;
+mod measured;
 pub(super) mod setup;
 mod timing;
 mod video;
@@ -13,6 +14,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::log::End;
+use self::measured::{MeasureArgs, Picture};
 use self::setup::SetupArgs;
 use self::timing::Costs;
 use self::video::Video;
@@ -39,7 +41,7 @@ use crate::steer::{Danger, Policy, SteerConfig};
 /// settings, and a fingerprint of the whole configuration), then each frame (frame, time_s, position_ned_m,
 /// velocity_ned_m_s, roll_pitch_yaw_rad, rate_body_rad_s, airspeed_m_s, clearance_m, progress_m, offset_m from the middle of
 /// the way, invalid: null or why there is no cue, coverage 0 to 1, heading_error_rad, contact_s and true_contact_s along the
-/// motion, source: cue, held or recovery, command, danger 0 to 1, acting: the command that acts after the latency), last how
+/// motion, measured: null without --measure, source: cue, held or recovery, command, danger 0 to 1, acting: the command that acts after the latency), last how
 /// it ended (outcome: reached, crashed, left-band or timed-out; and figures); timing.json, what the parts of a frame cost on
 /// this machine; report.html, the whole flight on a page that needs nothing beside itself; and flight.y4m, a video (10 Hz) of
 /// what is seen and made of it, a map and figures. It is not compressed: some 25 MB for each second of flight.
@@ -51,6 +53,7 @@ Examples:
   viewsphere fly --world forest:density=1/64:radius=0.2..0.3 --speed 8 --size 640x480 -o dense/
   viewsphere fly --world city --fault black:2..3 --fault gyro-bias=5:6 -o faults/
   viewsphere fly --world corridor --backend gpu --fault device-lost:3
+  viewsphere fly --world wall --measure --picture-at 3 -o wall/
   viewsphere fly --world forest --wind -3,0,0 --gusts light --vanes
   viewsphere fly --world wires --seed 2 --save-world wires.json --no-video
   viewsphere fly --world-file wires.json -o wires/ && ffmpeg -i wires/flight.y4m wires/flight.mp4
@@ -107,6 +110,8 @@ pub(super) struct Fly {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
     setup: SetupArgs,
     #[command(flatten)]
     backend: BackendArgs,
@@ -123,6 +128,7 @@ const FILES: [&str; 4] = [LOG, TIMING, PAGE, VIDEO];
 struct Recorder {
     records: Vec<Record>,
     costs: Costs,
+    picture: Option<Picture>,
     bar: ProgressBar,
     /// Whether a line a second is said where there is no bar.
     talks: bool,
@@ -145,6 +151,7 @@ impl Fly {
         let mut recorder = Recorder {
             records: Vec::new(),
             costs: Costs::default(),
+            picture: self.measure.picture(&flight)?,
             bar: if self.quiet { ProgressBar::hidden() } else { progress(&course) },
             talks: !self.quiet,
         };
@@ -195,6 +202,7 @@ impl Fly {
             steer: SteerConfig { policy: self.policy, danger: self.danger, ..SteerConfig::default() },
             latency_frames: self.latency_frames,
             faults: self.faults.clone(),
+            measure: self.measure.measure,
             ..self.setup.config()
         };
         // To be drawn: nothing is steered by it.
@@ -230,6 +238,7 @@ impl Fly {
         for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
             write_bytes(self.output.join(name), text.as_bytes())?;
         }
+        let picture = recorder.picture.as_ref().map(|picture| picture.write(&self.output)).transpose()?;
         if self.json {
             print::json(&end)?;
         } else {
@@ -256,6 +265,9 @@ impl Fly {
                 timing.text(),
                 self.output.display(),
             ))?;
+            if let Some(text) = measured::text(summary.measured.as_ref(), picture) {
+                print::text(&text)?;
+            }
         }
         Ok(match summary.outcome {
             flight::Outcome::Reached => Outcome::Done,
@@ -283,6 +295,9 @@ impl Recorder {
 
     fn add(&mut self, seen: &Seen<'_>) {
         self.records.push(seen.record.clone());
+        if let Some(picture) = &mut self.picture {
+            picture.add(seen);
+        }
         if let Some(cue) = seen.cue {
             self.costs.add_latency(cue.latency);
         }

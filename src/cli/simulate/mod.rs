@@ -45,6 +45,7 @@ Examples:
   viewsphere simulate --world city --seed 3 --seconds 20 -o set/
   viewsphere simulate --world forest:density=1/64 --speed 8 --size 320x240 --truth flow,depth,spherical -o set/
   viewsphere simulate --world wall --truth grid --grid 64x16 -o set/
+  viewsphere simulate --world corridor --seconds 3 --truth divergence,nearness --pictures -o set/
   viewsphere flow 'set/frames/%06d.png' -o estimate/ && viewsphere eval --truth set/flow/000010.flo estimate/000010.flo
   viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
     --gyro set/gyro.csv --camera-from-gyro frd")]
@@ -74,6 +75,10 @@ pub(super) struct Simulate {
     /// Which truths to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
     #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
     truth: Vec<Truth>,
+    /// Draw a picture beside each file of divergence and nearness: 0 is white, what comes nearer red, what a wall ahead shows
+    /// that is met in a second in full colour
+    #[arg(long)]
+    pictures: bool,
     /// Azimuths and elevations of the grid of rays over the field of view
     #[arg(long, value_name = "AZxEL", default_value = "32x24")]
     grid: Size,
@@ -114,6 +119,8 @@ struct Summary {
     path_m: f64,
     least_clearance_m: f64,
     bytes: u64,
+    /// What is shown in full colour, if there are pictures of truths.
+    full_colour: Option<String>,
 }
 
 impl Simulate {
@@ -126,7 +133,8 @@ impl Simulate {
         let course = self.world.course(self.seed)?;
         let errors = self.gyro_errors();
         errors.validate()?;
-        let writer = Writer::new(&course.world, &camera, &self.truth, self.grid)?;
+        let pictures = self.pictures.then_some(self.speed);
+        let writer = Writer::new(&course.world, &camera, &self.truth, self.grid, pictures)?;
         let mut folder = Folder::new(&self.output, self.force)?;
         let most = (self.seconds * f64::from(self.fps)).round().max(1.0) as usize;
         let flown = Flown::new(&course, self.speed, steps, most)?;
@@ -156,7 +164,21 @@ impl Simulate {
             let expected = format!("a divisor of {STEPS_PER_S}");
             return Err(Error::parameter("--fps", self.fps, expected));
         }
+        if self.pictures && self.scales().is_none() {
+            return Err(Error::parameter("--pictures", "on", "divergence or nearness in --truth"));
+        }
         Ok((STEPS_PER_S / self.fps) as usize)
+    }
+
+    /// What the pictures of truths show in full colour, in words.
+    fn scales(&self) -> Option<String> {
+        let scale = |truth: &Truth| {
+            let unit = if *truth == Truth::Divergence { "/s" } else { "/m" };
+            let full = truth.full_colour(self.speed).filter(|_| self.pictures)?;
+            Some(format!("{} ±{full:.4} {unit}", truth.folder()))
+        };
+        let scales: Vec<String> = self.truth.iter().filter_map(scale).collect();
+        (!scales.is_empty()).then(|| scales.join(", "))
     }
 
     fn gyro_errors(&self) -> GyroErrors {
@@ -205,14 +227,17 @@ impl Simulate {
             path_m: flown.path_m(),
             least_clearance_m: flown.least_clearance_m(course),
             bytes: folder.bytes()?,
+            full_colour: self.scales(),
         };
         if self.json {
             return print::json(&summary);
         }
+        let colours = summary.full_colour.as_ref();
+        let colours = colours.map_or(String::new(), |scales| format!("\ncolour  full at {scales}"));
         let ended = summary.ended.map_or(String::new(), |ended| format!(", then {ended}"));
         print::text(&format!(
             "world   {}, seed {}\nflight  {:.2} s, {:.1} m{ended}; nearest surface at {:.2} m\n\
-             set     {} frames, {:.1} MB in {}",
+             set     {} frames, {:.1} MB in {}{colours}",
             summary.world,
             summary.seed,
             summary.duration_s,

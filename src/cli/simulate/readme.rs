@@ -75,6 +75,12 @@ pub(super) fn write(
             ),
         };
     }
+    if let Some(scales) = args.scales() {
+        text += &format!(
+            "| divergence/, nearness/NNNNNN.png | the same in colours: 0 white, above it red, below it blue, unknown gray, full \
+             colour at {scales} |\n"
+        );
+    }
     text += "\n## Frames\n\n\
              - World: x north, y east, z down; the ground is at z = 0.\n\
              - Body: x forward, y right, z down, its origin at the camera. The quaternion w, x, y, z of poses.csv turns what is \

@@ -6,7 +6,8 @@ use super::flown::motion;
 use super::folder::Folder;
 use crate::camera::{Camera, Lens, View};
 use crate::error::Result;
-use crate::frame::{Plane, Size, flo, npy, write_bytes};
+use crate::frame::{Plane, Size, flo, npy, picture, write_bytes};
+use crate::report::{FULL_DIVERGENCE_HZ, diverging};
 use crate::sim::vehicle::VehicleState;
 use crate::sim::{RayTable, Seen, World, displacement, ray_grid, sightings};
 use crate::sphere::Grid;
@@ -40,6 +41,16 @@ impl Truth {
             Self::Grid => "grid",
         }
     }
+
+    /// The value that a picture of it shows in full colour, where there are pictures of it: what is met in a second, a wall
+    /// ahead, at this speed.
+    pub(super) fn full_colour(self, speed_m_s: f64) -> Option<f64> {
+        match self {
+            Self::Divergence => Some(FULL_DIVERGENCE_HZ),
+            Self::Nearness => Some(speed_m_s.recip()),
+            _ => None,
+        }
+    }
 }
 
 /// Writes truths.
@@ -49,12 +60,20 @@ pub(super) struct Writer<'a> {
     truths: &'a [Truth],
     rays: RayTable,
     grid: Grid,
+    /// The speed for whose scale pictures are drawn; none for no pictures.
+    pictures: Option<f64>,
 }
 
 impl<'a> Writer<'a> {
-    pub(super) fn new(world: &'a World, camera: &'a Camera, truths: &'a [Truth], grid: Size) -> Result<Self> {
+    pub(super) fn new(
+        world: &'a World,
+        camera: &'a Camera,
+        truths: &'a [Truth],
+        grid: Size,
+        pictures: Option<f64>,
+    ) -> Result<Self> {
         let grid = grid_over(camera, grid.validate()?)?;
-        Ok(Self { world, camera, truths, rays: RayTable::new(camera)?, grid })
+        Ok(Self { world, camera, truths, rays: RayTable::new(camera)?, grid, pictures })
     }
 
     /// Writes the truths of a frame. There is no flow without a next one.
@@ -74,7 +93,14 @@ impl<'a> Writer<'a> {
         let size = self.camera.size;
         let plane = |of: &dyn Fn(&Seen) -> f64| {
             let data = seen.iter().map(|seen| seen.as_ref().map_or(f32::NAN, |seen| of(seen) as f32));
-            npy::encode_plane(&Plane { size, data: data.collect() })
+            Plane { size, data: data.collect() }
+        };
+        let shown = |truth: &Truth, plane: Plane| -> Result<Vec<u8>> {
+            if let Some(full) = self.pictures.and_then(|speed_m_s| truth.full_colour(speed_m_s)) {
+                let path = folder.path(&format!("{}/{number:06}.png", truth.folder()));
+                picture::write_png(path, &diverging(&plane, full)?)?;
+            }
+            npy::encode_plane(&plane)
         };
         for truth in self.truths {
             let bytes = match truth {
@@ -83,9 +109,9 @@ impl<'a> Writer<'a> {
                     let to = next.camera_pose();
                     flo::encode(&displacement(self.world, self.camera, &self.rays, &pose, &to)?)?
                 }
-                Truth::Depth => plane(&|seen| seen.nearness_per_m.recip())?,
-                Truth::Nearness => plane(&|seen| seen.nearness_per_m)?,
-                Truth::Divergence => plane(&|seen| seen.divergence_per_s(&motion))?,
+                Truth::Depth => npy::encode_plane(&plane(&|seen| seen.nearness_per_m.recip()))?,
+                Truth::Nearness => shown(truth, plane(&|seen| seen.nearness_per_m))?,
+                Truth::Divergence => shown(truth, plane(&|seen| seen.divergence_per_s(&motion)))?,
                 Truth::Spherical => {
                     let flow = |seen: &Option<Seen>| {
                         seen.map_or([f32::NAN; 3], |seen| seen.flow_rad_s(&motion).as_vec3().to_array())

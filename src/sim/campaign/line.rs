@@ -134,6 +134,8 @@ impl Figures {
             roll_rate_rad_s: self.roll_rate_rad_s,
             invalid: self.invalid,
             offset_m: self.offset_std_mean_m,
+            // Only single flights are measured.
+            measured: None,
         })
     }
 }

@@ -32,6 +32,7 @@ pub(super) fn flown(world: &str, seed: u64, outcome: Outcome, least_clearance_m:
         roll_rate_rad_s: 0.3,
         invalid: 0.1,
         offset_m: None,
+        measured: None,
     };
     JobResult { job: job(world, seed), adapter: None, ended: Ended::Flown(summary) }
 }

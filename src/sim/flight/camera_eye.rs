@@ -5,8 +5,9 @@ use std::time::Instant;
 use super::config::FlightConfig;
 use super::eye::{Moment, Said};
 use super::fault::{Fault, FaultKind};
+use super::measure::Measure;
 use super::record::Cost;
-use crate::camera::Camera;
+use crate::camera::{Camera, Pose};
 use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat};
@@ -24,6 +25,7 @@ pub(super) struct CameraEye {
     random: Random,
     seed: u64,
     destroyed: bool,
+    measure: Option<Measure>,
 }
 
 impl CameraEye {
@@ -38,7 +40,10 @@ impl CameraEye {
         let size = config.camera.size;
         let image = Image { size, format: PixelFormat::Gray8, data: vec![0; size.pixels()] };
         let seed = random.next_u64();
-        Ok(Self { sight, pipeline, image, random, seed, destroyed: false })
+        let view = &config.pipeline.sphere;
+        let measure = config.measure.then(|| Measure::new(pipeline.ideal(), pipeline.cells().size, view));
+        let measure = measure.transpose()?;
+        Ok(Self { sight, pipeline, image, random, seed, destroyed: false, measure })
     }
 
     pub(super) fn push_gyro(&mut self, sample: GyroSample) {
@@ -56,9 +61,11 @@ impl CameraEye {
         let begun = Instant::now();
         if acts(FaultKind::Black) {
             self.image.data.fill(0);
+            self.show(None);
         } else if !acts(FaultKind::Frozen) {
             let seen = self.sight.look(&at.pose, self.seed.wrapping_add(at.frame))?;
             self.image.data.copy_from_slice(&seen.data);
+            self.show(Some(at.pose));
         }
         cost.sight = begun.elapsed();
         let shares =
@@ -88,14 +95,27 @@ impl CameraEye {
             Err(error) => return Err(error),
         };
         cost.pipeline = begun.elapsed();
+        let measured = match (&mut self.measure, &cue) {
+            (Some(measure), Ok(cue)) => measure.compare(cue, at),
+            _ => None,
+        };
+        let divergences = self.measure.as_ref().map(Measure::divergences).filter(|_| measured.is_some());
         Ok(match cue {
             Ok(cue) => Said {
                 image: Some(&self.image),
+                measured,
+                divergences,
                 view: View::of(&cue),
                 invalid: cue.invalid.map(|invalid| invalid.to_string()),
                 cue: Some(cue),
             },
             Err(lost) => Said { image: Some(&self.image), invalid: Some(lost.to_owned()), ..Said::default() },
         })
+    }
+    /// Remembers from where the picture was taken, where that is asked for.
+    fn show(&mut self, pose: Option<Pose>) {
+        if let Some(measure) = &mut self.measure {
+            measure.show(pose);
+        }
     }
 }

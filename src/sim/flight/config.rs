@@ -101,6 +101,8 @@ pub struct FlightConfig {
     pub flow_noise: FlowNoise,
     /// What goes wrong, and when.
     pub faults: Vec<Fault>,
+    /// Whether each frame's flow is held against the true one. Only with [`Sensor::Images`].
+    pub measure: bool,
     /// A flight that takes this many times as long as the straight way is given up, at least 1.
     pub patience: f64,
 }
@@ -136,6 +138,7 @@ impl Default for FlightConfig {
             gusts: None,
             flow_noise: FlowNoise::default(),
             faults: Vec::new(),
+            measure: false,
             patience: 2.0,
         }
     }
@@ -172,6 +175,14 @@ impl FlightConfig {
         }
         if self.latency_frames > 30 {
             return Err(Error::parameter("latency_frames", self.latency_frames, "0 to 30"));
+        }
+        if self.measure && self.sensor != Sensor::Images {
+            let expected = format!("the sensor {}", Sensor::Images);
+            return Err(Error::parameter(
+                "measure",
+                format_args!("on with the sensor {}", self.sensor),
+                expected,
+            ));
         }
         self.faults.iter().try_for_each(Fault::validate)
     }

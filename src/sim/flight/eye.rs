@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::camera_eye::CameraEye;
 use super::config::{FlightConfig, Sensor};
+use super::measure::{Divergences, Measured};
 use super::record::Cost;
 use super::true_eye::TrueEye;
 use crate::camera::{Camera, FRD_FROM_CAMERA, Lens, Pose, View as Ideal};
@@ -45,6 +46,9 @@ pub(super) struct Said<'a> {
     pub(super) view: Option<View<'a>>,
     /// Why there is no view.
     pub(super) invalid: Option<String>,
+    /// How far it is from the truth, where that is asked for.
+    pub(super) measured: Option<Measured>,
+    pub(super) divergences: Option<&'a Divergences>,
 }
 
 impl Eye {

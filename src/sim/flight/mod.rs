@@ -8,6 +8,7 @@ mod camera_eye;
 mod config;
 mod eye;
 mod fault;
+mod measure;
 mod names;
 mod record;
 mod true_eye;
@@ -19,6 +20,7 @@ use glam::DVec3;
 
 pub use config::{Body, FlightConfig, FlowNoise, Sensor, camera};
 pub use fault::{Fault, FaultKind};
+pub use measure::{Divergences, Measured};
 pub use record::{Cost, Outcome, Record, Summary};
 
 use crate::camera::{Camera, FRD_FROM_CAMERA, roll_pitch_yaw_rad};
@@ -72,6 +74,8 @@ pub struct Seen<'a> {
     pub cue: Option<&'a Cue<'a>>,
     /// What became of it.
     pub steering: &'a Steering,
+    /// The divergence in each cell of the view, where it is [measured](FlightConfig::measure).
+    pub divergences: Option<&'a Divergences>,
     /// What is kept.
     pub record: &'a Record,
 }
@@ -85,6 +89,8 @@ impl Flight {
     pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
         let mut config = config.clone();
         config.pipeline.gyro = Some(gyro_config());
+        config.pipeline.fields.looming |= config.measure;
+        config.pipeline.fields.cells |= config.measure;
         config.steer = SteerConfig {
             latency_s: f64::from(config.latency_frames) * FRAME_S,
             body_from_camera: FRD_FROM_CAMERA,
@@ -203,7 +209,8 @@ impl Flight {
         self.waiting.push_back(decision.command);
         let acting = self.waiting.pop_front().unwrap_or(decision.command);
         let record = record(course, &moment, &state, &said, decision, acting);
-        show(&Seen { image: said.image, cue: said.cue.as_ref(), steering, record: &record })?;
+        let Said { image, divergences, ref cue, .. } = said;
+        show(&Seen { image, cue: cue.as_ref(), steering, divergences, record: &record })?;
         let begun = Instant::now();
         self.tally.add(&record);
         let outcome = self.advance(&acting, &record);
@@ -290,6 +297,7 @@ fn record(
         heading_error_rad: heading.map(|heading| heading.direction.angle_between(ahead)),
         contact_s,
         true_contact_s: (true_rate_hz > 0.0).then(|| true_rate_hz.recip()),
+        measured: said.measured,
         command: decision.command,
         source: decision.source,
         danger: decision.danger,

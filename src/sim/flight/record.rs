@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 
+use super::measure::Measured;
 use crate::steer::{Command, Source};
 
 /// What is kept of a frame. It holds nothing that differs from one run to the next.
@@ -39,6 +40,8 @@ pub struct Record {
     pub contact_s: Option<f64>,
     /// The same, in truth.
     pub true_contact_s: Option<f64>,
+    /// How far the flow is from the true one, where that is [measured](super::FlightConfig::measure).
+    pub measured: Option<Measured>,
     /// What was decided.
     pub command: Command,
     /// By what.
@@ -83,6 +86,8 @@ pub struct Summary {
     pub invalid: f64,
     /// Standard deviation of the offset from the middle of the way, metres, and its mean, where there is a middle.
     pub offset_m: Option<[f64; 2]>,
+    /// How far the flow is from the true one, where that is measured: medians over the frames.
+    pub measured: Option<Measured>,
 }
 
 impl Summary {
@@ -117,6 +122,7 @@ impl Cost {
 pub(super) struct Tally {
     clearances_m: Vec<f64>,
     offsets_m: Vec<f64>,
+    measured: Vec<Measured>,
     path_m: f64,
     roll_rate_square: f64,
     invalid: usize,
@@ -127,6 +133,7 @@ impl Tally {
     pub(super) fn add(&mut self, record: &Record) {
         self.clearances_m.push(record.clearance_m);
         self.offsets_m.extend(record.offset_m);
+        self.measured.extend(record.measured);
         let last_m = self.last_m.replace(record.position_ned_m);
         self.path_m += last_m.map_or(0.0, |last_m| last_m.distance(record.position_ned_m));
         self.roll_rate_square += record.rate_body_rad_s.x.powi(2);
@@ -151,6 +158,7 @@ impl Tally {
             invalid: self.invalid as f64 / count,
             offset_m: (!self.offsets_m.is_empty())
                 .then(|| [(variance / self.offsets_m.len() as f64).sqrt(), mean]),
+            measured: Measured::over(&self.measured),
         }
     }
 }

@@ -13,6 +13,20 @@ use crate::sphere::{
 };
 use crate::steer::View;
 
+/// How what is seen at a bearing and a nearness moved from one exact pose to the next, a turn taken out: where it is half-way,
+/// and the flow there in radians.
+pub(super) fn true_flow(
+    bearing: DVec3,
+    nearness_per_m: f64,
+    [before, pose]: [&Pose; 2],
+    prev_from_cur: &DMat3,
+) -> (DVec3, DVec3) {
+    let from_before =
+        nearness_per_m * (pose.position_world - before.position_world) + pose.world_from_camera * bearing;
+    let seen_before = before.world_from_camera.transpose() * from_before.normalize();
+    model::midpoint_flow(prev_from_cur.transpose() * seen_before, bearing)
+}
+
 /// Sees through a pinhole that has a pixel for each cell of the view.
 pub(super) struct TrueEye {
     ideal: Camera,
@@ -105,13 +119,9 @@ impl TrueEye {
         let width = near.size.width as usize;
         let flow = |(i, nearness): (usize, &f32)| {
             let bearing = self.coarse.centre(i % width, i / width);
-            let nearness = f64::from(*nearness);
-            let from_before =
-                nearness * (pose.position_world - before.position_world) + pose.world_from_camera * bearing;
-            let earlier = turn.transpose() * (before.world_from_camera.transpose() * from_before.normalize());
-            let (bearing, flow_rad) = model::midpoint_flow(earlier, bearing);
+            let (bearing, flow_rad) = true_flow(bearing, f64::from(*nearness), [before, pose], turn);
             // The sky shows nothing that a camera could follow.
-            (nearness > 0.0).then_some(CellFlow { bearing, flow_rad, trust: 1.0 })
+            (*nearness > 0.0).then_some(CellFlow { bearing, flow_rad, trust: 1.0 })
         };
         near.data.iter().enumerate().map(flow).collect()
     }
