@@ -161,7 +161,8 @@ fn what_is_not_textured_or_masked_is_not_trusted() {
     let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &PipelineConfig::default()));
     let flat = Image { data: vec![90; camera.size.pixels()], ..frames(&camera, 1).remove(0).1 };
     good(pipeline.process(&good(flat.frame()), 0.0));
-    let cue = good(pipeline.process(&good(flat.frame()), 0.03));
+    let brighter = Image { data: vec![91; camera.size.pixels()], ..flat.clone() };
+    let cue = good(pipeline.process(&good(brighter.frame()), 0.03));
     assert!(
         matches!(cue.invalid, Some(Invalid::Coverage { found, .. }) if found == 0.0),
         "{:?}",
@@ -282,4 +283,29 @@ fn frames_in_flight_keep_their_times() {
         assert_eq!(cue.time_s, *time_s);
         assert_eq!(cue.invalid, (cue.frame == 0).then_some(Invalid::First));
     }
+}
+
+/// A camera that has stopped giving new pictures looks like a world at rest. When it goes on, what it shows is held against
+/// when the last picture was new.
+#[test]
+fn a_picture_that_is_shown_again_makes_no_cue() {
+    let camera = small();
+    let frames = frames(&camera, 6);
+    let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &with_gyro()));
+    gyro(&mut pipeline, |_| true);
+    let shown = [0, 1, 2, 2, 2, 5];
+    let cues: Vec<(Option<Invalid>, Option<f64>, f64)> = (shown.into_iter().zip(&frames))
+        .map(|(shown, (time_s, _))| {
+            let cue = good(pipeline.process(&good(frames[shown].1.frame()), *time_s));
+            (cue.invalid, cue.interval_s, cue.sectors.get(12, 4).nearness_rate_hz[1])
+        })
+        .collect();
+    assert!(
+        matches!(cues[3].0, Some(Invalid::Frozen)) && matches!(cues[4].0, Some(Invalid::Frozen)),
+        "{cues:?}"
+    );
+    assert_eq!((&cues[2].0, &cues[5].0), (&None, &None));
+    assert!(cues[5].1.is_some_and(|interval_s| (interval_s - 0.1).abs() < 1e-9), "{cues:?}");
+    // A tenth of a second on it is a little nearer, not three times as near.
+    assert!((cues[5].2 / cues[2].2 - 1.0).abs() < 0.3, "{cues:?}");
 }

@@ -127,7 +127,9 @@ fn the_map_is_level_whatever_the_bank() {
 
 #[test]
 fn what_has_left_the_view_is_remembered_for_a_while() {
-    let mut steering = steering(Policy::Arc, Danger::Nearness);
+    // What a map keeps of the frame before stays where it was ahead; so sudden a turn would carry it along.
+    let config = SteerConfig { smoothing: 1.0, ..SteerConfig::default() };
+    let mut steering = Steering::new(config).unwrap();
     let seen = view(&[(DVec3::new(7.0, 0.0, 10.0), 1.5)]);
     steering.update(&observation(0.0, DMat3::IDENTITY, Some(&seen)));
     let before = steering.obstacles().len();

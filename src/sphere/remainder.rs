@@ -5,71 +5,128 @@ use glam::{DMat3, DVec3};
 use super::eigen::symmetric_eigen;
 use super::sectors::Sectors;
 
-/// Rounds of finding the turn with the direction of motion held, and the direction with the turn held.
-const ROUNDS: usize = 12;
+/// Rounds of Gauss and Newton's method.
+const ROUNDS: usize = 15;
 /// Sectors that are needed at least.
 const LEAST_SECTORS: usize = 12;
-/// How far the turn must be determined about every axis, against the sectors' number.
-const LEAST_SHARE: f64 = 0.01;
+/// Levenberg and Marquardt's damping, as a share of the diagonal.
+const DAMPING: f64 = 1e-3;
+/// Sectors nearer to the direction of motion than this, in radians, say nothing of what is across it.
+const NEAR_RAD: f64 = 0.05;
+/// Unknowns: the turn, and the direction of motion along two axes.
+const UNKNOWNS: usize = 5;
+
+/// What a sector shows.
+struct Seen {
+    bearing: DVec3,
+    flow: DVec3,
+    weight: f64,
+}
 
 /// The camera's angular rate that the sectors' flow still shows, rad/s in the camera's frame; none where they do not tell.
 ///
 /// Moving along v, a static point at a bearing p is seen to move within the plane of p and v. What moves across that plane,
-/// along n = p × v, is a turn: F·n = (p × ω)·n. That is linear in ω for a given v, and linear in v for a given ω, so that
-/// the two are found in turns by least squares; sectors that fit badly lose weight (S. Geman and D. McClure, 1987). It is
-/// the epipolar constraint for small motions: A. Bruss and B. Horn, Passive navigation, CVGIP 21, 1983.
+/// along n = p × v / |p × v|, is a turn: (F − p × ω)·n = 0, the epipolar constraint for small motions (A. Bruss and B. Horn,
+/// Passive navigation, CVGIP 21, 1983). ω and v are found together by least squares; sectors that fit badly lose weight
+/// (S. Geman and D. McClure, 1987).
 pub fn remaining_turn_rad_s(sectors: &Sectors) -> Option<DVec3> {
-    let grid = sectors.grid;
-    let seen: Vec<(DVec3, DVec3, f64)> = (sectors.sectors.iter().enumerate())
-        .filter(|(_, sector)| sector.is_known())
-        .map(|(at, sector)| {
-            let p = grid.bearing(at % grid.columns, at / grid.columns);
-            (p, sector.flow_rad_s, sector.coverage * sector.confidence)
-        })
-        .filter(|(_, flow, weight)| flow.is_finite() && *weight > 0.0)
-        .collect();
+    let seen = seen(sectors);
     if seen.len() < LEAST_SECTORS {
         return None;
     }
-    // Something fast that moves by itself must not lead the first round astray.
-    let mut speeds: Vec<f64> = seen.iter().map(|(_, flow, _)| flow.length()).collect();
-    speeds.sort_by(f64::total_cmp);
-    let usual = speeds[speeds.len() / 2].max(1e-4);
-    let first = |flow: &DVec3, weight: f64| weight / (1.0 + flow.length_squared() / (usual * usual));
-    let mut weights: Vec<f64> = seen.iter().map(|(_, flow, weight)| first(flow, *weight)).collect();
-    let mut turn = DVec3::ZERO;
-    for _ in 0..ROUNDS {
-        let moment = seen.iter().zip(&weights).fold(DMat3::ZERO, |sum, ((p, flow, _), weight)| {
-            let normal = p.cross(*flow - p.cross(turn));
-            // The length of a flow says how near things are, not how well it is known.
-            let size = normal.length_squared() + 1e-4;
-            sum + *weight / size * outer(normal, normal)
-        });
-        let direction = symmetric_eigen(&moment).1[0];
-        let (mut a, mut b, mut total) = (DMat3::ZERO, DVec3::ZERO, 0.0);
-        let across = |p: &DVec3| p.cross(direction).try_normalize();
-        for ((p, flow, _), weight) in seen.iter().zip(&weights) {
-            let Some(normal) = across(p) else { continue };
-            let slope = normal.cross(*p);
-            a += *weight * outer(slope, slope);
-            b += *weight * slope * flow.dot(normal);
-            total += weight;
+    let moment = seen.iter().fold(DMat3::ZERO, |sum, sector| {
+        let normal = sector.bearing.cross(sector.flow);
+        sum + sector.weight / (normal.length_squared() + 1e-4) * outer(normal, normal)
+    });
+    let (mut turn, mut direction) = (DVec3::ZERO, symmetric_eigen(&moment).1[0]);
+    for round in 0..ROUNDS {
+        let (a, b) = direction.any_orthonormal_pair();
+        let rows: Vec<([f64; UNKNOWNS], f64, f64)> =
+            seen.iter().filter_map(|sector| row(sector, turn, direction, [a, b])).collect();
+        let mut misfits: Vec<f64> = rows.iter().map(|(_, misfit, _)| misfit.abs()).collect();
+        misfits.sort_by(f64::total_cmp);
+        let typical = (2.0 * misfits.get(misfits.len() / 2)?).max(1e-4);
+        let (mut matrix, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
+        for (slopes, misfit, weight) in &rows {
+            // The first round takes everything as it is.
+            let excess = if round > 0 { misfit / typical } else { 0.0 };
+            let weight = weight / (1.0 + excess * excess).powi(2);
+            for i in 0..UNKNOWNS {
+                (0..UNKNOWNS).for_each(|j| matrix[i][j] += weight * slopes[i] * slopes[j]);
+                right[i] -= weight * slopes[i] * misfit;
+            }
         }
-        if !(symmetric_eigen(&a).0[0] > LEAST_SHARE * total) {
-            return None;
-        }
-        turn = a.inverse() * b;
-        let misfits: Vec<f64> = (seen.iter())
-            .map(|(p, flow, _)| across(p).map_or(0.0, |normal| (flow - p.cross(turn)).dot(normal).abs()))
-            .collect();
-        let mut sorted = misfits.clone();
-        sorted.sort_by(f64::total_cmp);
-        let typical = (2.0 * sorted[sorted.len() / 2]).max(1e-4);
-        for ((weight, (_, flow, trust)), misfit) in weights.iter_mut().zip(&seen).zip(misfits) {
-            *weight = first(flow, *trust) / (1.0 + (misfit / typical).powi(2)).powi(2);
-        }
+        (0..UNKNOWNS).for_each(|i| matrix[i][i] *= 1.0 + DAMPING);
+        let step = solve(matrix, right)?;
+        turn += DVec3::new(step[0], step[1], step[2]);
+        direction = (direction + step[3] * a + step[4] * b).try_normalize()?;
     }
     turn.is_finite().then_some(turn)
+}
+
+fn seen(sectors: &Sectors) -> Vec<Seen> {
+    let grid = sectors.grid;
+    let known =
+        sectors.sectors.iter().enumerate().filter(|(_, sector)| {
+            sector.is_known() && sector.flow_rad_s.is_finite() && sector.confidence > 0.0
+        });
+    let mut seen: Vec<Seen> = known
+        .map(|(at, sector)| Seen {
+            bearing: grid.bearing(at % grid.columns, at / grid.columns),
+            flow: sector.flow_rad_s,
+            weight: sector.coverage * sector.confidence,
+        })
+        .collect();
+    // Something fast that moves by itself must not lead the first round astray.
+    let mut speeds: Vec<f64> = seen.iter().map(|sector| sector.flow.length()).collect();
+    speeds.sort_by(f64::total_cmp);
+    let usual = speeds.get(speeds.len() / 2).map_or(1.0, |usual| usual.max(1e-4));
+    seen.iter_mut().for_each(|sector| sector.weight /= 1.0 + (sector.flow.length() / usual).powi(2));
+    seen
+}
+
+/// What a sector says: the slopes of its misfit against the unknowns, the misfit, the weight.
+fn row(
+    sector: &Seen,
+    turn: DVec3,
+    direction: DVec3,
+    axes: [DVec3; 2],
+) -> Option<([f64; UNKNOWNS], f64, f64)> {
+    let p = sector.bearing;
+    let across = p.cross(direction);
+    let length = across.length();
+    if !(length > NEAR_RAD) {
+        return None;
+    }
+    let normal = across / length;
+    let left = sector.flow - p.cross(turn);
+    // The normal turns with the direction, but stays a unit vector.
+    let [along_a, along_b] = axes.map(|axis| {
+        let change = p.cross(axis) / length;
+        left.dot(change - normal * normal.dot(change))
+    });
+    let slope = p.cross(normal);
+    Some(([slope.x, slope.y, slope.z, along_a, along_b], left.dot(normal), sector.weight))
+}
+
+/// Solves linear equations with a positive definite matrix by elimination; none where it is not.
+fn solve(mut matrix: [[f64; UNKNOWNS]; UNKNOWNS], mut right: [f64; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
+    let largest = (0..UNKNOWNS).map(|i| matrix[i][i]).fold(0.0, f64::max);
+    for i in 0..UNKNOWNS {
+        if !(matrix[i][i] > 1e-9 * largest) {
+            return None;
+        }
+        for j in i + 1..UNKNOWNS {
+            let share = matrix[j][i] / matrix[i][i];
+            (i..UNKNOWNS).for_each(|k| matrix[j][k] -= share * matrix[i][k]);
+            right[j] -= share * right[i];
+        }
+    }
+    for i in (0..UNKNOWNS).rev() {
+        let known: f64 = (i + 1..UNKNOWNS).map(|k| matrix[i][k] * right[k]).sum();
+        right[i] = (right[i] - known) / matrix[i][i];
+    }
+    Some(right)
 }
 
 fn outer(a: DVec3, b: DVec3) -> DMat3 {

@@ -17,7 +17,7 @@ const BALANCED_RAD: [f64; 2] = [0.16, 0.80];
 /// How far a potential field's force reaches, in seconds of flight.
 const REACH_S: f64 = 2.5;
 /// Force of a bearing at half of that, against the goal's.
-const FORCE: f64 = 0.05;
+const FORCE: f64 = 0.01;
 /// Headings looked at to each side, and how far apart they are.
 const HEADINGS: i32 = 18;
 const HEADING_STEP_RAD: f64 = 0.0524;
@@ -73,7 +73,9 @@ pub(super) fn potential(
         force -= FORCE * share * share * obstacle.place_ned_m.normalize_or_zero();
     }
     let there = level.ned_from.transpose() * force;
-    let [azimuth, elevation] = [there.x.atan2(there.z), (-there.y).atan2(there.x.hypot(there.z))];
+    // A fixed wing cannot go back, however hard it is pushed: what counts is to which side.
+    let ahead = there.z.max(0.5);
+    let [azimuth, elevation] = [there.x.atan2(ahead), (-there.y).atan2(there.x.hypot(ahead))];
     let climb_rad = if obstacles.is_empty() { hold_altitude(config, goal) } else { elevation };
     Command { bank_rad: bank_for(moving, azimuth), climb_rad }
 }

@@ -35,11 +35,15 @@ struct ByKind {
     gyro: u64,
     coverage: u64,
     lost: u64,
+    frozen: u64,
+    turn: u64,
 }
 
 impl ByKind {
-    fn counts(&mut self) -> [&mut u64; 5] {
-        [&mut self.first, &mut self.interval, &mut self.gyro, &mut self.coverage, &mut self.lost]
+    /// In the order of [`KINDS`].
+    fn counts(&mut self) -> [&mut u64; KINDS.len()] {
+        let Self { first, interval, gyro, coverage, lost, frozen, turn } = self;
+        [first, interval, gyro, coverage, lost, frozen, turn]
     }
 }
 

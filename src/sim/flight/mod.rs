@@ -87,6 +87,7 @@ impl Flight {
     /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range; as
     /// [`Sight::new`](crate::sim::Sight::new) and [`Pipeline::new`](crate::Pipeline::new).
     pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
+        config.validate()?;
         let mut config = config.clone();
         config.pipeline.gyro = Some(gyro_config());
         config.pipeline.fields.looming |= config.measure;
@@ -96,7 +97,6 @@ impl Flight {
             body_from_camera: FRD_FROM_CAMERA,
             ..config.steer
         };
-        config.validate()?;
         course.validate()?;
         let random = Random::new(course.seed);
         let start = Start {
