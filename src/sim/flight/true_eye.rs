@@ -99,7 +99,7 @@ impl TrueEye {
         if self.sensor == Sensor::Depth {
             let velocity = at.pose.world_from_camera.transpose() * at.velocity_world_m_s;
             let heading = Heading { direction: velocity.normalize_or(DVec3::Z), error_rad: 0.0 };
-            self.sum_up(&near, velocity.length(), interval_s);
+            self.sum_up(&near, velocity, interval_s);
             return Some(View { sectors: &self.sectors, heading });
         }
         let mut flows = self.flows(&near, &before, &at.pose, turn);
@@ -159,7 +159,7 @@ impl TrueEye {
     }
 
     /// Sectors of a nearness that is known.
-    fn sum_up(&mut self, near: &Plane, speed_m_s: f64, interval_s: f64) {
+    fn sum_up(&mut self, near: &Plane, velocity_m_s: DVec3, interval_s: f64) {
         let grid = self.sectors.grid;
         let mut rates: Vec<Vec<f64>> = vec![Vec::new(); grid.len()];
         let mut cells = vec![0_usize; grid.len()];
@@ -168,11 +168,14 @@ impl TrueEye {
             let Some([column, row]) = grid.sector(self.coarse.centre(i % width, i / width)) else { continue };
             cells[row * grid.columns + column] += 1;
             if *nearness > 0.0 {
-                rates[row * grid.columns + column].push(f64::from(*nearness) * speed_m_s);
+                rates[row * grid.columns + column].push(f64::from(*nearness) * velocity_m_s.length());
             }
         }
         self.sectors.interval_s = interval_s;
-        for ((sector, rates), cells) in self.sectors.sectors.iter_mut().zip(&mut rates).zip(cells) {
+        let ahead = velocity_m_s.normalize_or(DVec3::Z);
+        for (at, sector) in self.sectors.sectors.iter_mut().enumerate() {
+            let (rates, cells) = (&mut rates[at], cells[at]);
+            let p = grid.bearing(at % grid.columns, at / grid.columns);
             rates.sort_by(f64::total_cmp);
             let rank = |share: f64| ((rates.len().max(1) - 1) as f64 * share).round() as usize;
             let rate = |share: f64| rates.get(rank(share)).copied().unwrap_or(0.0);
@@ -182,6 +185,7 @@ impl TrueEye {
                 nearness_rate_hz: [1.0 - self.quantile, 0.5, self.quantile].map(rate),
                 // So that either map of danger shows the same.
                 divergence_hz: 2.0 * rate(self.quantile),
+                flow_rad_s: rate(0.5) * (p * p.dot(ahead) - ahead),
                 ..Sector::default()
             };
         }
