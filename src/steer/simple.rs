@@ -17,7 +17,7 @@ const BALANCED_RAD: [f64; 2] = [0.16, 0.80];
 /// How far a potential field's force reaches, in seconds of flight.
 const REACH_S: f64 = 2.5;
 /// Force of a bearing at half of that, against the goal's.
-const FORCE: f64 = 0.002;
+const FORCE: f64 = 0.012;
 /// Headings looked at to each side, and how far apart they are.
 const HEADINGS: i32 = 18;
 const HEADING_STEP_RAD: f64 = 0.0524;

@@ -33,7 +33,7 @@ use crate::sim::vehicle::{
     Wind,
 };
 use crate::sim::{Course, Random};
-use crate::sphere::Heading;
+use crate::sphere::{Heading, Sectors};
 use crate::steer::{Command, Decision, Goal, Observation, SteerConfig, Steering, View};
 use eye::{Eye, Moment, Said, gyro_config};
 use record::Tally;
@@ -62,6 +62,8 @@ pub struct Flight {
     states: Vec<VehicleState>,
 }
 
+/// How far off the direction of motion sectors may lie that say what is met there, radians.
+const AHEAD_RAD: f64 = 0.1;
 /// Standard error of a direction of motion from vanes, radians.
 const VANES_RAD: f64 = 0.035;
 
@@ -277,10 +279,7 @@ fn record(
     let ahead = at.pose.world_from_camera.transpose() * motion.normalize_or(DVec3::X);
     let true_rate_hz = course.world.seen(&at.pose, ahead).nearness_per_m * motion.length();
     let heading = said.view.map(|view| view.heading).filter(Heading::is_known);
-    let contact_s = said.view.and_then(|View { sectors, .. }| {
-        let [column, row] = sectors.grid.sector(ahead)?;
-        sectors.time_to_contact_s(sectors.get(column, row))[1]
-    });
+    let contact_s = said.view.and_then(|View { sectors, .. }| ahead_s(sectors, ahead));
     Record {
         frame: at.frame,
         time_s: at.time_s,
@@ -303,4 +302,16 @@ fn record(
         danger: decision.danger,
         acting,
     }
+}
+
+/// Seconds until contact in a direction: by the median of the sectors around it, since a single one there says little.
+fn ahead_s(sectors: &Sectors, direction: DVec3) -> Option<f64> {
+    let grid = sectors.grid;
+    let around = (0..grid.len())
+        .filter(|at| grid.bearing(at % grid.columns, at / grid.columns).dot(direction) > AHEAD_RAD.cos());
+    let known = around.map(|at| &sectors.sectors[at]).filter(|sector| sector.is_known());
+    let mut rates_hz: Vec<f64> = known.map(|sector| sector.nearness_rate_hz[1]).collect();
+    rates_hz.sort_by(f64::total_cmp);
+    let rate_hz = *rates_hz.get(rates_hz.len() / 2)?;
+    (rate_hz > 0.0).then(|| (rate_hz.recip() - 0.5 * sectors.interval_s).max(0.0))
 }

@@ -36,7 +36,7 @@ pub struct Record {
     pub coverage: f64,
     /// Angle between the direction of motion that the view tells and the true one; none where it tells none.
     pub heading_error_rad: Option<f64>,
-    /// Time to contact along the direction of motion, as the view says.
+    /// Time to contact along the direction of motion, as the view says within 0.1 rad of it.
     pub contact_s: Option<f64>,
     /// The same, in truth.
     pub true_contact_s: Option<f64>,
