@@ -4,10 +4,10 @@
 mod common;
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
+use common::feed::feed;
 use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::eval::Scene;
@@ -41,18 +41,11 @@ impl Ended {
 
 fn run_with(folder: &Path, args: &[&str], stdin: &[u8], no_driver: bool) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
-    command.args(args).current_dir(folder).env_remove("XDG_RUNTIME_DIR");
+    command.args(args).current_dir(folder);
     if no_driver {
         command.env("VK_DRIVER_FILES", "/dev/null").env("VK_ICD_FILENAMES", "/dev/null");
     }
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    let mut pipe = child.stdin.take().unwrap();
-    let input = stdin.to_vec();
-    // A program that has ended does not read on.
-    let writer = std::thread::spawn(move || drop(pipe.write_all(&input)));
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
+    let output = feed(&mut command, stdin);
     let stderr = String::from_utf8(output.stderr).unwrap();
     Ended { code: output.status.code(), stdout: output.stdout, stderr }
 }

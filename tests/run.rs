@@ -1,11 +1,13 @@
 //! `viewsphere run` as its users run it.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
-use std::fs;
-use std::io::Write;
-use std::path::Path;
-use std::process::{Command, Stdio};
+mod common;
 
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use common::feed::feed;
 use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::camera::{self, Camera, Format, Lens};
@@ -54,15 +56,8 @@ impl Ended {
 
 fn run_with(folder: &Path, args: &[&str], stdin: &[u8]) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
-    command.args(["run", "--backend", "cpu"]).args(args).current_dir(folder).env_remove("XDG_RUNTIME_DIR");
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    let mut pipe = child.stdin.take().unwrap();
-    let input = stdin.to_vec();
-    // A program that has ended does not read on.
-    let writer = std::thread::spawn(move || drop(pipe.write_all(&input)));
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
+    command.args(["run", "--backend", "cpu"]).args(args).current_dir(folder);
+    let output = feed(&mut command, stdin);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }

@@ -1,10 +1,13 @@
 //! The simulator's truth against finite differences and against its own pictures.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
+mod common;
+
+use common::sample::sample;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use viewsphere::camera::{Camera, Lens, Pose};
-use viewsphere::frame::{FlowField, Image, Size};
+use viewsphere::frame::{FlowField, Size};
 use viewsphere::sim::scenes::{self, START};
 use viewsphere::sim::{Motion, RayTable, Surface, World, displacement, render};
 
@@ -158,27 +161,6 @@ fn a_wall_ahead_diverges_by_two_over_the_time_to_contact() {
     assert!((seen.nearness_rate_per_s(&motion) - 0.4).abs() < 1e-12);
     let sky = scenes::frontal_wall(5.0).unwrap().seen(&START, DVec3::NEG_Z);
     assert_eq!((sky.nearness_per_m, sky.divergence_per_s(&MOTION)), (0.0, 0.0));
-}
-
-/// Catmull–Rom between the pixels; `None` within two pixels of the border.
-fn sample(image: &Image, at: [f64; 2]) -> Option<f64> {
-    let (width, height) = (image.size.width as usize, image.size.height as usize);
-    let inside = |c: f64, side: usize| c >= 2.0 && c <= side as f64 - 4.0;
-    if !(inside(at[0], width) && inside(at[1], height)) {
-        return None;
-    }
-    let weights = |t: f64| {
-        [
-            ((-0.5 * t + 1.0) * t - 0.5) * t,
-            (1.5 * t - 2.5) * t * t + 1.0,
-            ((-1.5 * t + 2.0) * t + 0.5) * t,
-            (0.5 * t - 0.5) * t * t,
-        ]
-    };
-    let [x, y] = at.map(|c| c.floor() as usize);
-    let (columns, rows) = (weights(at[0].fract()), weights(at[1].fract()));
-    let pixel = |i: usize, j: usize| f64::from(image.data[(y + j - 1) * width + x + i - 1]);
-    Some((0..4).map(|j| rows[j] * (0..4).map(|i| columns[i] * pixel(i, j)).sum::<f64>()).sum())
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -94,7 +94,7 @@ impl PipelineConfig {
     }
 
     /// The pinhole whose pictures the flow is computed of.
-    pub(super) fn ideal(&self, camera: &Camera) -> Result<Camera> {
+    pub(crate) fn ideal(&self, camera: &Camera) -> Result<Camera> {
         match &self.ideal {
             None if camera.lens == Lens::NONE => Ok(*camera),
             None => camera.ideal(camera.size, View::CropToValid),

@@ -1,8 +1,10 @@
 //! What the tests share: the adapter, chosen on purpose and named.
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod feed;
 pub(crate) mod flight;
 pub(crate) mod pair;
+pub(crate) mod sample;
 pub(crate) mod sides;
 
 use std::sync::OnceLock;

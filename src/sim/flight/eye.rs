@@ -9,7 +9,7 @@ use super::config::{FlightConfig, Sensor};
 use super::measure::{Divergences, Measured};
 use super::record::Cost;
 use super::true_eye::TrueEye;
-use crate::camera::{Camera, FRD_FROM_CAMERA, Lens, Pose, View as Ideal};
+use crate::camera::{Camera, FRD_FROM_CAMERA, Pose};
 use crate::engine::Backend;
 use crate::error::Result;
 use crate::frame::Image;
@@ -61,11 +61,7 @@ impl Eye {
         if config.sensor == Sensor::Images {
             return Ok(Self::Camera(Box::new(CameraEye::new(backends, world, config, random)?)));
         }
-        let ideal = match (config.pipeline.ideal, config.camera.lens) {
-            (Some(ideal), _) => ideal,
-            (None, Lens::NONE) => config.camera,
-            (None, _) => config.camera.ideal(config.camera.size, Ideal::CropToValid)?,
-        };
+        let ideal = config.pipeline.ideal(&config.camera)?;
         let view = &config.pipeline.sphere;
         let eye = TrueEye::new(&ideal, view, config.sensor, config.flow_noise, random)?;
         Ok(Self::True(Box::new(eye), Box::new(Gyro::new(gyro_config())?), None))
