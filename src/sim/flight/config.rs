@@ -31,7 +31,7 @@ pub enum Sensor {
 }
 
 /// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow in pictures of 320×240, as a
-/// flight computes it: half of the better cells in a corridor are 0.09 px off, which is a standard deviation of 0.08 px along
+/// flight computes it: the better half of the cells in a corridor are 0.09 px off in the median, which is a standard deviation of 0.08 px along
 /// each axis, and its window of 2.1 px and the expansion's of 1.2 px together are a Gaussian of 2.4 px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowNoise {
@@ -120,8 +120,8 @@ impl Default for FlightConfig {
             camera: camera(Size::new(320, 240)),
             sight: SightConfig::default(),
             pipeline: PipelineConfig {
-                // The box sees a thin trunk as a quarter farther away than it is: it takes in what is behind. The Gaussian,
-                // of 2.1 px, does not. What is left to find of a primed search, two iterations find.
+                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; a Gaussian of
+                // 2.1 px a few per cent. What is left to find of a primed search, two iterations find.
                 engine: engine::Config {
                     flow: Farneback { iterations: 2, window: Window::Gaussian, ..Farneback::default() },
                     ..PipelineConfig::default().engine
