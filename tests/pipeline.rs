@@ -311,3 +311,25 @@ fn a_picture_that_is_shown_again_makes_no_cue() {
     // A tenth of a second on it is a little nearer, not three times as near.
     assert!((cues[5].2 / cues[2].2 - 1.0).abs() < 0.3, "{cues:?}");
 }
+
+/// For however long it is shown again, that is what is wrong; but frames that do not come are told apart from it.
+#[test]
+fn a_picture_that_is_shown_for_long_stays_the_reason() {
+    let camera = small();
+    let frames = frames(&camera, 2);
+    let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &PipelineConfig::default()));
+    let mut reason =
+        |shown: usize, time_s: f64| good(pipeline.process(&good(frames[shown].1.frame()), time_s)).invalid;
+    assert_eq!(reason(0, 0.0), Some(Invalid::First));
+    for frame in 1..20 {
+        assert_eq!(reason(0, f64::from(frame) / 30.0), Some(Invalid::Frozen), "{frame}");
+    }
+    // A gap with the same picture on both sides is a gap, and so is one without a number.
+    for time_s in [5.0, 4.0, f64::NAN] {
+        assert!(matches!(reason(0, time_s), Some(Invalid::Interval { .. })), "{time_s}");
+    }
+    assert!(matches!(reason(0, 6.0), Some(Invalid::Interval { .. })));
+    assert_eq!(reason(0, 6.1), Some(Invalid::Frozen));
+    // The first new picture makes no pair with one of so long ago.
+    assert!(matches!(reason(1, 6.5), Some(Invalid::Interval { .. })));
+}

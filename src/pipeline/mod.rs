@@ -45,6 +45,8 @@ struct Last {
     frame: u64,
     /// When its picture was taken, be it shown again.
     time_s: f64,
+    /// Its own time.
+    given_s: f64,
     digest: u64,
 }
 
@@ -117,7 +119,13 @@ impl Pipeline {
         let digest = digest(frame);
         let frozen = before.filter(|before| before.digest == digest);
         let (turn, fault) = self.turn(before, time_s);
-        let fault = fault.or(frozen.map(|_| Invalid::Frozen));
+        let fault = match (frozen, fault) {
+            // Frames come as they should; only what they show is longer ago than a pair may be.
+            (Some(before), Some(Invalid::Interval { .. })) if self.is_pair(time_s - before.given_s) => {
+                Some(Invalid::Frozen)
+            }
+            (frozen, fault) => fault.or(frozen.map(|_| Invalid::Frozen)),
+        };
         if let Some(Invalid::Interval { .. }) = fault {
             self.engine.reset();
         }
@@ -128,7 +136,7 @@ impl Pipeline {
         let ticket = self.engine.submit_with(frame, &extras)?;
         // What comes after is to be held against when the picture was new.
         let taken_s = frozen.map_or(time_s, |before| before.time_s);
-        self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, digest });
+        self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, given_s: time_s, digest });
         // What was never waited for is forgotten, oldest first.
         if self.waiting.len() == self.config.engine.in_flight {
             self.waiting.pop_front();
@@ -221,7 +229,7 @@ impl Pipeline {
     fn turn(&self, before: Option<Last>, time_s: f64) -> (Option<DMat3>, Option<Invalid>) {
         let Some(before) = before else { return (None, Some(Invalid::First)) };
         let (interval_s, limit_s) = (time_s - before.time_s, self.config.max_interval_s);
-        if !(interval_s > 0.0 && interval_s <= limit_s) {
+        if !self.is_pair(interval_s) {
             return (None, Some(Invalid::Interval { interval_s, limit_s }));
         }
         match self.gyro.as_ref().map(|gyro| gyro.prev_from_cur(before.time_s, time_s)) {
@@ -229,6 +237,11 @@ impl Pipeline {
             Some(Ok(turn)) => (Some(turn), None),
             Some(Err(fault)) => (None, Some(Invalid::Gyro(fault))),
         }
+    }
+
+    /// Whether frames so far apart make a pair.
+    fn is_pair(&self, interval_s: f64) -> bool {
+        interval_s > 0.0 && interval_s <= self.config.max_interval_s
     }
 
     /// The heading as the camera sees it at a later time.
