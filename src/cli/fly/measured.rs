@@ -66,8 +66,7 @@ impl Picture {
         let Some(divergences) = seen.divergences.filter(|_| !self.done) else { return };
         let record = seen.record;
         self.done = match self.at_s {
-            // A frame's time is a sum of steps.
-            Some(at_s) => record.time_s >= at_s - 1e-6,
+            Some(at_s) => record.time_s >= at_s,
             None => record.progress_m >= self.half_m,
         };
         self.kept = Some((record.time_s, divergences.clone()));

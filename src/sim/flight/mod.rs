@@ -40,6 +40,8 @@ use record::Tally;
 
 /// Steps of the vehicle from frame to frame.
 const STEPS: u32 = 8;
+/// And in a second.
+const STEPS_PER_S: f64 = 240.0;
 /// From frame to frame, seconds.
 pub const FRAME_S: f64 = STEPS as f64 * STEP_S;
 
@@ -175,7 +177,7 @@ impl Flight {
     /// # Errors
     /// What drawing, the pipeline and `show` fail with, apart from faults that a flight goes on with.
     pub fn step(&mut self, mut show: impl FnMut(&Seen<'_>) -> Result<()>) -> Result<Option<Summary>> {
-        let state = self.vehicle.state();
+        let state = self.state(0);
         self.states.clear();
         self.states.push(state);
         self.push_gyro(&state);
@@ -234,7 +236,7 @@ impl Flight {
         }
         for step in 1..=STEPS {
             self.vehicle.advance(acting, STEP_S);
-            let state = self.vehicle.state();
+            let state = self.state(step);
             let clearance_m = self.course.world.clearance_m(state.position_ned_m);
             self.least_clearance_m = self.least_clearance_m.min(clearance_m);
             if !(clearance_m >= self.config.radius_m) {
@@ -251,6 +253,13 @@ impl Flight {
             }
         }
         None
+    }
+
+    /// The vehicle's state after so many steps of a frame. Its time is that many steps, not their sum, which is off in its
+    /// last digits: what begins at 2 s begins with frame 60.
+    fn state(&self, step: u32) -> VehicleState {
+        let steps = self.frame * u64::from(STEPS) + u64::from(step);
+        VehicleState { time_s: steps as f64 / STEPS_PER_S, ..self.vehicle.state() }
     }
 
     fn push_gyro(&mut self, state: &VehicleState) {
