@@ -220,8 +220,11 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     campaign(&["--seeds", "x"], &["seeds", "x"]);
     campaign(&["--seeds", "0..99999999999"], &["number of flights"]);
     campaign(&["--speeds", "12,-1"], &["speed_m_s", "-1"]);
+    refused(&["campaign", "--sensors", "depth", "--speeds", "12,500"], &["speed_m_s is 500", "level"]);
+    campaign(&["--wind", "1e9,0,0"], &["wind", "1e9,0,0", "within ±100 m/s"]);
     campaign(&["--latencies", "1,31"], &["latency_frames", "31"]);
     campaign(&["--faults", "none,black"], &["black:0 with the sensor depth"]);
+    campaign(&["--faults", "gyro-bias=5"], &["gyro-bias=5:0 with the sensor depth"]);
     campaign(&["--shard", "0/3"], &["shard", "0/3"]);
     campaign(&["--jobs", "0"], &["--jobs", "0"]);
     campaign(&["--jobs", "100000"], &["--jobs", "100000"]);

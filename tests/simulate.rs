@@ -195,6 +195,8 @@ fn what_is_out_of_range_is_refused_and_leaves_nothing() {
         ("--speed", "-1", "--speed is -1"),
         ("--noise", "-1", "noise_levels is -1"),
         ("--gyro-noise", "-1", "noise_rad_s_rthz is -1"),
+        ("--gyro-noise", "1e300", "expected 0 to 1"),
+        ("--gyro-bias", "1e300", "expected -35 to 35"),
         ("--grid", "0x4", "0×4"),
         ("--world", "moon", "moon"),
     ] {

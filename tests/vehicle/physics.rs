@@ -56,7 +56,7 @@ fn there_is_no_trim_below_the_stall_or_without_thrust() {
         assert!(params.trim(wrong).is_err());
     }
     let message = AirframeParams { thrust_limit_n: 1.0, ..params }.trim(12.0).unwrap_err().to_string();
-    assert!(message.starts_with("trim") && message.contains("1 N"), "{message}");
+    assert!(message.starts_with("speed_m_s is 12, which takes ") && message.contains("and 1 N"), "{message}");
 }
 
 /// The period of the phugoid: trimmed controls, and a start that is 2 % too fast.

@@ -131,6 +131,9 @@ fn the_airframe_flies_in_gusts() {
 #[test]
 fn what_is_no_wind_is_refused() {
     assert!(Wind::new(DVec3::NAN, None, 0).is_err());
+    assert!(Wind::new(DVec3::X * 100.0, None, 0).is_ok());
+    let text = Wind::new(DVec3::X * 1e9, None, 0).unwrap_err().to_string();
+    assert_eq!(text, "steady_ned_m_s is 1000000000, expected -100 to 100");
     let wrong = [
         Gusts { intensity_m_s: DVec3::new(1.0, -1.0, 1.0), ..Gusts::LIGHT },
         Gusts { length_m: DVec3::new(1.0, 1.0, 0.0), ..Gusts::LIGHT },

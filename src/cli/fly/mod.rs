@@ -94,7 +94,8 @@ pub(super) struct Fly {
     #[arg(long, value_name = "N", default_value_t = 1)]
     latency_frames: u32,
     /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
-    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost
+    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost. True depth shows gyro-lost alone, true
+    /// flow gyro-bias too, images all
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
     /// Folder to write into; it is made if it is not there
@@ -144,7 +145,7 @@ impl Fly {
             Sensor::Images => self.backend.open_pair()?,
             _ => [Backend::Cpu, Backend::Cpu],
         };
-        Faults(self.faults.clone()).check(config.sensor, &backends[1])?;
+        Faults(self.faults.clone()).check(&backends[1])?;
         let names = (config.sensor == Sensor::Images).then(|| backends.each_ref().map(Backend::name));
         let mut flight = Flight::new(backends, &course, &config)?;
         let drawing = if self.no_video { None } else { Some(FlightVideo::new(&flight)?) };
@@ -316,7 +317,7 @@ impl Recorder {
         if !self.bar.is_hidden() {
             self.bar.set_position(record.progress_m.max(0.0) as u64);
             self.bar.set_message(state);
-        } else if self.talks && (record.time_s % 1.0) < FRAME_S {
+        } else if self.talks && (record.time_s % 1.0) < 0.5 * FRAME_S {
             print::note(format_args!(
                 "{:.0} s, {:.0} m on the way, {:.1} m clear, bank {:+.0}°, {state}",
                 record.time_s,

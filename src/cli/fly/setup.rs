@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::sim::flight::{Body, FlightConfig};
-use crate::sim::vehicle::{Gusts, TurnParams, VaneErrors};
+use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors};
 
 /// What flies, and in what air.
 #[derive(Args, Clone, Debug)]
@@ -16,7 +16,7 @@ pub(in crate::cli) struct SetupArgs {
     /// What flies
     #[arg(long, value_enum, default_value_t = BodyArg::Airframe)]
     body: BodyArg,
-    /// Where the air moves to, m/s north, east and down
+    /// Where the air moves to, m/s north, east and down, each within ±100
     #[arg(long, value_name = "N,E,D", allow_hyphen_values = true, default_value = "0,0,0")]
     wind: Ned,
     /// Gusts on top of it
@@ -53,11 +53,13 @@ impl FromStr for Ned {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let wrong = || Error::parameter("wind", format_args!("{text:?}"), "three speeds as N,E,D");
+        let expected = format_args!("three speeds as N,E,D, each within ±{MAX_WIND_M_S} m/s").to_string();
+        let wrong = || Error::parameter("wind", format_args!("{text:?}"), &expected);
         let numbers: Vec<f64> =
             text.split(',').map(|part| part.trim().parse().map_err(|_| wrong())).collect::<Result<_>>()?;
         let axes: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;
-        Some(DVec3::from(axes)).filter(|wind| wind.is_finite()).map(Self).ok_or_else(wrong)
+        let sound = axes.iter().all(|axis| axis.abs() <= MAX_WIND_M_S);
+        if sound { Ok(Self(axes.into())) } else { Err(wrong()) }
     }
 }
 

@@ -85,10 +85,10 @@ pub(super) struct Simulate {
     /// Standard deviation of the noise of the pictures, in gray levels, 0 to 64
     #[arg(long, value_name = "LEVELS", default_value_t = 2.0, allow_negative_numbers = true)]
     noise: f64,
-    /// Density of the gyro's white noise, rad/s/√Hz, 0 or above [default: 3.4e-4]
+    /// Density of the gyro's white noise, rad/s/√Hz, 0 to 1 [default: 3.4e-4]
     #[arg(long, value_name = "DENSITY", allow_negative_numbers = true)]
     gyro_noise: Option<f64>,
-    /// What the gyro says too much about each axis at the start, degrees a second
+    /// What the gyro says too much about each axis at the start, degrees a second, within ±2005
     #[arg(long, value_name = "DEG_S", default_value_t = 0.0, allow_negative_numbers = true)]
     gyro_bias: f64,
     /// Folder to write into; there must be nothing in it

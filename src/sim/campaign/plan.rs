@@ -102,7 +102,7 @@ impl Campaign {
         }
         for setting in &settings {
             setting.config(&self.base).validate()?;
-            setting.faults.check(setting.sensor, flow)?;
+            setting.faults.check(flow)?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
 use crate::sim::SightConfig;
 use crate::sim::vehicle::{
-    AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors,
+    AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors, Wind,
 };
 use crate::sphere::{Derotation, HeadingModel, Sphere};
 use crate::steer::SteerConfig;
@@ -96,7 +96,7 @@ pub struct FlightConfig {
     pub airspeed_error: f64,
     /// What vanes for the direction of motion get wrong; none where that is taken from the flow itself.
     pub vanes: Option<VaneErrors>,
-    /// Where the air moves to, m/s NED.
+    /// Where the air moves to, m/s NED, each axis within ±[`MAX_WIND_M_S`](crate::sim::vehicle::MAX_WIND_M_S).
     pub wind_ned_m_s: glam::DVec3,
     /// Gusts, if there are any.
     pub gusts: Option<Gusts>,
@@ -166,7 +166,8 @@ impl FlightConfig {
     /// Checks every parameter's range.
     ///
     /// # Errors
-    /// [`Error::Parameter`], naming the first one that is out of range.
+    /// [`Error::Parameter`], naming the first one that is out of range, also for a fault that the sensor shows nothing of
+    /// and for a speed at which the body cannot fly level.
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         self.pipeline.validate()?;
@@ -194,6 +195,15 @@ impl FlightConfig {
                 expected,
             ));
         }
-        self.faults.iter().try_for_each(Fault::validate)
+        match &self.body {
+            Body::Turn(params) => params.validate()?,
+            Body::Airframe { params, autopilot } => {
+                autopilot.validate()?;
+                params.trim(self.speed_m_s)?;
+            }
+        }
+        self.gyro.validate()?;
+        Wind::new(self.wind_ned_m_s, self.gusts, 0)?;
+        self.faults.iter().try_for_each(|fault| fault.validate().and_then(|()| fault.check(self.sensor)))
     }
 }

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::Sensor;
 use crate::error::{Error, Result};
+use crate::sim::vehicle::MAX_BIAS_RAD_S;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +18,7 @@ pub enum FaultKind {
     Dropped(f64),
     /// The gyro is silent.
     GyroLost,
-    /// The gyro says so much too much about each of its axes, rad/s.
+    /// The gyro says so much too much about each of its axes, rad/s, within ±[`MAX_BIAS_RAD_S`].
     GyroBias(f64),
     /// The frames' times are not numbers.
     NotANumber,
@@ -49,11 +51,29 @@ impl Fault {
             FaultKind::Dropped(share) if !(0.0..=1.0).contains(&share) => {
                 Err(Error::parameter("share of dropped frames", share, "0 to 1"))
             }
-            FaultKind::GyroBias(bias) if !bias.is_finite() => {
-                Err(Error::parameter("bias of the gyro", bias, "a finite rate"))
+            FaultKind::GyroBias(bias_rad_s) if !(bias_rad_s.abs() <= MAX_BIAS_RAD_S) => {
+                let expected = format_args!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees()).to_string();
+                let found = format_args!("{} °/s", bias_rad_s.to_degrees());
+                Err(Error::parameter("bias of the gyro", found, expected))
             }
             _ => Ok(()),
         }
+    }
+
+    /// Checks that a flight by this sensor is another one with it: faults of pictures need pictures, and what is seen of
+    /// the true depth does not depend on how the gyro turns, only on whether it is there.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the fault and the sensor.
+    pub fn check(&self, sensor: Sensor) -> Result<()> {
+        let expected = match self.kind {
+            FaultKind::GyroLost => return Ok(()),
+            FaultKind::GyroBias(_) if sensor != Sensor::Depth => return Ok(()),
+            FaultKind::GyroBias(_) => "the sensor flow, noisy-flow or images, which a bias acts on",
+            _ if sensor == Sensor::Images => return Ok(()),
+            _ => "a fault of the gyro, or the sensor images",
+        };
+        Err(Error::parameter("fault", format_args!("{self} with the sensor {sensor}"), expected))
     }
 
     /// Whether it is there at a time.
@@ -132,11 +152,34 @@ mod tests {
     }
 
     #[test]
+    fn a_fault_that_the_sensor_shows_nothing_of_is_refused() {
+        let check = |text: &str, sensor| text.parse::<Fault>().unwrap().check(sensor);
+        for sensor in [Sensor::Depth, Sensor::Flow, Sensor::NoisyFlow, Sensor::Images] {
+            assert!(check("gyro-lost", sensor).is_ok());
+            assert_eq!(check("gyro-bias=5", sensor).is_ok(), sensor != Sensor::Depth);
+            for text in ["frozen", "black", "dropped", "nan", "device-lost"] {
+                assert_eq!(check(text, sensor).is_ok(), sensor == Sensor::Images, "{text}");
+            }
+        }
+        let error = check("gyro-bias=5:1..2", Sensor::Depth).unwrap_err().to_string();
+        assert!(error.starts_with("fault is gyro-bias=5:1..2 with the sensor depth, expected"), "{error}");
+    }
+
+    #[test]
     fn what_is_none_is_an_error_of_one_line() {
-        for text in ["", "froze", "frozen=1", "black:2..1", "black:x", "dropped=1.5", "dropped=nan", "nan:-1"]
-        {
+        for text in [
+            "",
+            "froze",
+            "frozen=1",
+            "black:2..1",
+            "black:x",
+            "dropped=1.5",
+            "dropped=nan",
+            "nan:-1",
+            "gyro-bias=2006",
+        ] {
             let error = text.parse::<Fault>().unwrap_err().to_string();
-            assert!(error.contains("fault") || error.contains("share"), "{error}");
+            assert!(["fault", "share", "bias"].iter().any(|word| error.contains(word)), "{error}");
             assert!(!error.contains('\n'), "{error}");
         }
     }

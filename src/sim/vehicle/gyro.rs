@@ -1,19 +1,22 @@
 use glam::DVec3;
 
-use super::state::{STEP_S, VehicleState, not_negative};
+use super::state::{STEP_S, VehicleState, within};
 use super::stream::{Stream, normal};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::imu::GyroSample;
 use crate::sim::Random;
+
+/// The largest bias about an axis, rad/s: what a gyro of 2000°/s, the widest that small ones come with, can say at all.
+pub const MAX_BIAS_RAD_S: f64 = 35.0;
 
 /// What is wrong with a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroErrors {
-    /// Density of the white noise of each axis, rad/s/√Hz, 0 or above. The angle of a time T is wrong by √T of it.
+    /// Density of the white noise of each axis, rad/s/√Hz, 0 to 1. The angle of a time T is wrong by √T of it.
     pub noise_rad_s_rthz: f64,
-    /// Density of the noise that the bias of each axis walks by, rad/s²/√Hz, 0 or above.
+    /// Density of the noise that the bias of each axis walks by, rad/s²/√Hz, 0 to 1.
     pub bias_walk_rad_s2_rthz: f64,
-    /// The bias at the start, rad/s FRD.
+    /// The bias at the start, rad/s FRD, each axis within ±[`MAX_BIAS_RAD_S`].
     pub bias_rad_s: DVec3,
 }
 
@@ -43,14 +46,12 @@ impl GyroErrors {
     /// Checks every field.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for the first that is out of range.
+    /// [`Error::Parameter`](crate::Error::Parameter) for the first that is out of range.
     pub fn validate(&self) -> Result<()> {
-        not_negative("noise_rad_s_rthz", self.noise_rad_s_rthz)?;
-        not_negative("bias_walk_rad_s2_rthz", self.bias_walk_rad_s2_rthz)?;
-        if !self.bias_rad_s.is_finite() {
-            return Err(Error::parameter("bias_rad_s", self.bias_rad_s, "three finite rates"));
-        }
-        Ok(())
+        within("noise_rad_s_rthz", self.noise_rad_s_rthz, 0.0, 1.0)?;
+        within("bias_walk_rad_s2_rthz", self.bias_walk_rad_s2_rthz, 0.0, 1.0)?;
+        let axes = self.bias_rad_s.to_array();
+        axes.into_iter().try_for_each(|axis| within("bias_rad_s", axis, -MAX_BIAS_RAD_S, MAX_BIAS_RAD_S))
     }
 }
 

@@ -105,6 +105,14 @@ pub(super) fn not_negative(name: &'static str, value: f64) -> Result<()> {
     Err(Error::parameter(name, value, "0 or above, and finite"))
 }
 
+/// Checks that a parameter is within a range, its ends included.
+pub(super) fn within(name: &'static str, value: f64, low: f64, high: f64) -> Result<()> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::parameter(name, value, format_args!("{low} to {high}")))
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {

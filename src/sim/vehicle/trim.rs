@@ -53,12 +53,13 @@ impl AirframeParams {
             thrust_n: pressure_n * self.lift_and_drag(attack_rad)[1] / attack_rad.cos(),
         };
         if controls.within(self) != controls {
-            let found = format!("{} N m, {} N", controls.torque_body_n_m.y, controls.thrust_n);
+            let [torque_n_m, thrust_n] = [controls.torque_body_n_m.y, controls.thrust_n];
+            let found = format!("{speed_m_s}, which takes {torque_n_m:.2} N m and {thrust_n:.2} N");
             let expected = format!(
-                "at most {} N m and {} N in level flight at {speed_m_s} m/s",
+                "a speed to fly level at with at most {} N m and {} N",
                 self.torque_limit_n_m.y, self.thrust_limit_n
             );
-            return Err(Error::parameter("trim", found, expected));
+            return Err(Error::parameter("speed_m_s", found, expected));
         }
         Ok(Trim { attack_rad, controls })
     }

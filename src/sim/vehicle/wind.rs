@@ -1,9 +1,12 @@
 use glam::DVec3;
 
-use super::state::{not_negative, positive};
+use super::state::within;
 use super::stream::{Stream, normal};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::sim::Random;
+
+/// The strongest wind along an axis, steady or as a gust's standard deviation, m/s: more than a hurricane has.
+pub const MAX_WIND_M_S: f64 = 100.0;
 
 /// Gusts on top of a steady wind: how strong, and over what length they change.
 ///
@@ -12,9 +15,9 @@ use crate::sim::Random;
 /// the same over the whole span: they push, and do not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gusts {
-    /// Standard deviation north, east and down, m/s, each 0 or above.
+    /// Standard deviation north, east and down, m/s, each 0 to [`MAX_WIND_M_S`].
     pub intensity_m_s: DVec3,
-    /// Length scale of each, metres, above 0.
+    /// Length scale of each, metres, 0.001 to 1e6.
     pub length_m: DVec3,
 }
 
@@ -27,9 +30,9 @@ impl Gusts {
 
     fn validate(&self) -> Result<()> {
         for axis in self.intensity_m_s.to_array() {
-            not_negative("intensity_m_s", axis)?;
+            within("intensity_m_s", axis, 0.0, MAX_WIND_M_S)?;
         }
-        self.length_m.to_array().into_iter().try_for_each(|axis| positive("length_m", axis))
+        self.length_m.to_array().into_iter().try_for_each(|axis| within("length_m", axis, 1e-3, 1e6))
     }
 }
 
@@ -44,13 +47,13 @@ pub struct Wind {
 
 impl Wind {
     /// A wind from the first gust on, which is drawn like all others. The steady part says where the air moves **to**,
-    /// m/s NED: a wind from the north is −x.
+    /// m/s NED, each axis within ±[`MAX_WIND_M_S`]: a wind from the north is −x.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a wind that is not finite, a negative intensity, a length that is not above 0.
+    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range.
     pub fn new(steady_ned_m_s: DVec3, gusts: Option<Gusts>, seed: u64) -> Result<Self> {
-        if !steady_ned_m_s.is_finite() {
-            return Err(Error::parameter("steady_ned_m_s", steady_ned_m_s, "three finite speeds"));
+        for axis in steady_ned_m_s.to_array() {
+            within("steady_ned_m_s", axis, -MAX_WIND_M_S, MAX_WIND_M_S)?;
         }
         let mut random = Stream::Gusts.of(seed);
         let mut gust_ned_m_s = DVec3::ZERO;
