@@ -53,6 +53,28 @@ fn the_new_file_replaces_the_old_one_whole() {
 }
 
 #[test]
+fn what_nobody_writes_any_more_goes_with_the_next_file_of_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let others =
+        [".a.txt.4000000000-2.tmp", ".a.txt.4000000000.tmp", ".a.txt.x-1.tmp", ".b.4000000000-1.tmp"];
+    for name in others.iter().chain(&[".a.txt.4000000000-1.tmp", ".a.txt.7-0.tmp"]) {
+        fs::write(folder.join(name), b"part").unwrap();
+    }
+    // One of them is being written.
+    let held = fs::OpenOptions::new().write(true).open(folder.join(others[0])).unwrap();
+    held.lock().unwrap();
+    write_atomic(folder.join("a.txt"), |out| {
+        // Nor is that of the file itself taken for one that was left.
+        write_bytes(folder.join("a.txt"), b"first").unwrap();
+        out.write_all(b"second").map_err(|source| Error::io("a.txt", source))
+    })
+    .unwrap();
+    assert_eq!(names(folder), [&others[..], &["a.txt"]].concat());
+    assert_eq!(fs::read(folder.join("a.txt")).unwrap(), b"second");
+}
+
+#[test]
 fn until_it_is_done_the_old_file_is_seen() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
