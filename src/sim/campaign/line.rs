@@ -1,6 +1,9 @@
 //! A result as a line of JSON.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
 
 use super::{Ended, Job, JobResult, Setting};
 use crate::error::{Error, Result};
@@ -53,16 +56,25 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
+/// What is wrong with a line of a file, and where in it: to the reader it is the only one.
+pub(super) fn problem(error: &serde_json::Error) -> String {
+    error.to_string().replace(" at line 1 column ", " at column ")
+}
+
 impl JobResult {
     /// The result on one line, without its end.
     pub(super) fn to_line(&self) -> serde_json::Result<String> {
+        serde_json::to_string(&self.line())
+    }
+
+    fn line(&self) -> Line {
         let setting = &self.job.setting;
         let Setting { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = setting;
         let (flown, error) = match &self.ended {
             Ended::Flown(summary) => (Some(Figures::from(summary)), None),
             Ended::Failed(reason) => (None, Some(reason.clone())),
         };
-        serde_json::to_string(&Line {
+        Line {
             world: world.to_string(),
             sensor: sensor.to_string(),
             policy: policy.to_string(),
@@ -75,12 +87,31 @@ impl JobResult {
             adapter: self.adapter.clone(),
             error,
             flown,
-        })
+        }
+    }
+
+    /// The fields that two results differ in, with the values of either; none if they are the same.
+    pub(super) fn differences(&self, other: &Self) -> serde_json::Result<Option<[String; 2]>> {
+        let members = |result: &Self| -> serde_json::Result<BTreeMap<String, Value>> {
+            let flown = serde_json::to_value(result.line())?;
+            let figures = flown.get("flown").and_then(Value::as_object).cloned().unwrap_or_default();
+            let all = flown.as_object().cloned().unwrap_or_default();
+            Ok(all.into_iter().filter(|(name, _)| name != "flown").chain(figures).collect())
+        };
+        let both = [members(self)?, members(other)?];
+        let names = || both.iter().flatten().map(|(name, _)| name).collect::<BTreeSet<_>>();
+        let differ: Vec<&String> =
+            names().into_iter().filter(|&name| both[0].get(name) != both[1].get(name)).collect();
+        let told = |members: &BTreeMap<String, Value>| {
+            let value = |name: &&String| format!("{name} {}", members.get(*name).unwrap_or(&Value::Null));
+            differ.iter().map(value).collect::<Vec<_>>().join(", ")
+        };
+        Ok((!differ.is_empty()).then(|| both.each_ref().map(told)))
     }
 
     /// Reads what [`JobResult::to_line`] writes; else says what is wrong.
     pub(super) fn from_line(text: &str) -> std::result::Result<Self, String> {
-        let line: Line = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let line: Line = serde_json::from_str(text).map_err(|error| problem(&error))?;
         line.result().map_err(|error| error.to_string())
     }
 }

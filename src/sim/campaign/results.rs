@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::line::problem;
 use super::{Ended, JobResult, Table, fingerprint};
 use crate::error::{Error, Result};
 use crate::frame::write_atomic;
@@ -70,15 +71,17 @@ impl Results {
     pub(super) fn parse(path: &Path, text: &[u8]) -> Result<(Self, usize)> {
         let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
         let wrong = |number: usize, why: String| {
-            Error::format(path, "a line", format_args!("{number}: {why}"), "a result as campaign writes it")
+            let found = format!("broken in line {number}, {why}");
+            Error::format(path, "results file", found, "a result as campaign writes it")
         };
         let mut lines = text[..whole].split_inclusive(|&byte| byte == b'\n').enumerate();
         let read = |(i, line): (usize, &[u8])| {
-            std::str::from_utf8(line).map(str::to_owned).map_err(|error| wrong(i + 1, error.to_string()))
+            let text = std::str::from_utf8(line).map_err(|error| wrong(i + 1, error.to_string()))?;
+            Ok(text.trim_end().to_owned())
         };
         let first = lines.next().map(read).transpose()?.unwrap_or_default();
-        let configuration =
-            serde_json::from_str(&first).map_err(|error| wrong(1, format!("no configuration: {error}")))?;
+        let configuration = serde_json::from_str(&first)
+            .map_err(|error| wrong(1, format!("no configuration: {}", problem(&error))))?;
         let mut results = Self::new(configuration);
         for line in lines {
             let result = JobResult::from_line(&read(line)?).map_err(|why| wrong(line.0 + 1, why))?;
@@ -102,10 +105,11 @@ impl Results {
                 }
                 (_, Ended::Failed(_)) => (),
                 _ => {
-                    let (before, now) = (line(path.as_ref(), entry.get())?, line(path.as_ref(), &result)?);
-                    if before != now {
-                        let expected = format!("the one that is there already: {before}");
-                        return Err(Error::format(path, "the result of a job", now, expected));
+                    let broken = |error| Error::io(path.as_ref(), io::Error::other(error));
+                    if let Some([before, now]) = entry.get().differences(&result).map_err(broken)? {
+                        let found = format!("that of {} with {now}", entry.key());
+                        let expected = format!("the one that is there already, with {before}");
+                        return Err(Error::format(path, "result", found, expected));
                     }
                 }
             },
@@ -217,7 +221,16 @@ mod tests {
         one.merge("b", results([reached("wall", 1)])).unwrap();
         let other = results([flown("wall", 1, Outcome::Crashed, 0.5)]);
         let error = one.merge("b", other).unwrap_err().to_string();
-        assert!(error.contains("crashed") && error.contains("reached"), "{error}");
+        let key = reached("wall", 1).job.key();
+        let figures = |least, low, outcome| {
+            format!("least_clearance_m {least}, low_clearance_m {low}, outcome \"{outcome}\"")
+        };
+        let expected = format!(
+            "b: result is that of {key} with {}, expected the one that is there already, with {}",
+            figures("0.5", "0.8333333333333333", "crashed"),
+            figures("0.3333333333333333", "0.6666666666666666", "reached"),
+        );
+        assert_eq!(error, expected);
     }
 
     #[test]
@@ -236,10 +249,11 @@ mod tests {
         results([reached("wall", 1), reached("wall", 2)]).write(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         for (wrong, words) in [
-            (text.replacen("\"seed\":2", "\"seed\":x", 1), "line is 3"),
-            (text.replacen("viewsphere", "v", 1), "line is 1"),
-            (String::new(), "line is 1"),
-            ("{\"viewsphere\"".to_owned(), "line is 1"),
+            (text.replacen("\"seed\":2", "\"seed\":x", 1), "broken in line 3, expected value at column "),
+            (text.replacen("viewsphere", "v", 1), "broken in line 1, no configuration: unknown field `v`"),
+            (String::new(), "broken in line 1"),
+            ("{\"viewsphere\"".to_owned(), "broken in line 1"),
+            (text.clone() + "{\"world\":\n", "broken in line 4, EOF while parsing a value at column 9"),
         ] {
             fs::write(&path, wrong).unwrap();
             let error = Results::read(&path).unwrap_err().to_string();
