@@ -42,6 +42,10 @@ impl<'a> Field<'a> {
                 }
                 Ok(())
             }
+            [Some(high), Some(low)] if self.are_sound(&[low, high]) => {
+                let expected = format!("the lower end first: {low}..{high}");
+                Err(Error::parameter(self.name, format_args!("{text:?}"), expected))
+            }
             _ => Err(self.wrong(format_args!("{text:?}"))),
         }
     }

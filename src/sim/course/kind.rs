@@ -122,9 +122,15 @@ impl FromStr for CourseKind {
             )
         })?;
         let mut fields = kind.fields();
+        let mut given = Vec::new();
         for part in parts {
-            let (key, value) = part.split_once('=').unwrap_or((part, ""));
-            match fields.iter_mut().find(|field| field.name == key.trim()) {
+            let (key, value) = part.split_once('=').unwrap_or(("", part));
+            let key = key.trim();
+            if given.contains(&key) {
+                let found = format_args!("{name} with {part:?} after another one");
+                return Err(Error::parameter("world", found, "each parameter once"));
+            }
+            match fields.iter_mut().find(|field| field.name == key) {
                 Some(field) => field.read(value.trim())?,
                 None => {
                     let known: Vec<&str> = fields.iter().map(|field| field.name).collect();
@@ -132,6 +138,7 @@ impl FromStr for CourseKind {
                     return Err(Error::parameter("world", format_args!("{name} with {part:?}"), expected));
                 }
             }
+            given.push(key);
         }
         drop(fields);
         Ok(kind)
@@ -187,13 +194,22 @@ mod tests {
                 "forest:width=3",
                 "world is forest with \"width=3\", expected PARAMETER=VALUE with one of density, ",
             ),
+            (
+                "forest:radius",
+                "world is forest with \"radius\", expected PARAMETER=VALUE with one of density, ",
+            ),
+            (
+                "forest:radius=1:density=1/64: radius = 2",
+                "world is forest with \"radius = 2\" after another one, expected each parameter once",
+            ),
             ("forest:density=", "density is \"\", expected 0.0001 to 0.04 per m²"),
             ("forest:density=1", "density is \"1\", expected 0.0001 to 0.04 per m²"),
             ("forest:density=1/0", "density is \"1/0\", expected 0.0001 to 0.04 per m²"),
             ("forest:density=nan", "density is \"nan\", expected 0.0001 to 0.04 per m²"),
+            ("forest:radius=0.4..0.2", "radius is \"0.4..0.2\", expected the lower end first: 0.2..0.4"),
             (
-                "forest:radius=0.4..0.2",
-                "radius is \"0.4..0.2\", expected a value or a range such as 0.05..5 within 0.05 to 5 m",
+                "forest:radius=0.4..0.02",
+                "radius is \"0.4..0.02\", expected a value or a range such as 0.05..5 within 0.05 to 5 m",
             ),
             ("forest:radius=0.2-0.4", "radius is \"0.2-0.4\", expected a value or a range such as 0.05..5"),
         ];
