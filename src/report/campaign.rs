@@ -1,6 +1,6 @@
 //! Many flights in one table.
 
-use super::html::{escape, page};
+use super::html::{counted, escape, page, paragraph};
 
 /// Width of an interval's drawing, pixels.
 const BAR_PX: f64 = 150.0;
@@ -64,11 +64,12 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
     table += "</table>\n";
     let flights: usize = rows.iter().map(|row| row.flights).sum();
     let body = format!(
-        "<p>{}</p>\n<section>\n<h2>{flights} flights</h2>\n\
+        "{}<section>\n<h2>{}</h2>\n\
          <p>The bar is the share that reached its goal, the line over it its 95 % interval (Wilson). Clearance is the least of \
          a flight, in the mean; efficiency is progress a metre flown, of those that reached their goal.</p>\n\
          {table}</section>\n",
-        escape(about)
+        paragraph(about),
+        counted(flights, "flight"),
     );
     page(title, &body)
 }

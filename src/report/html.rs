@@ -37,10 +37,20 @@ pub(super) fn tile(name: &str, value: impl Display, kind: &str) -> String {
     format!("<div class=\"tile {kind}\"><span>{name}</span><b>{value}</b></div>\n")
 }
 
+/// A line of text, if there is any.
+pub(super) fn paragraph(text: impl Display) -> String {
+    let text = escape(text);
+    if text.is_empty() { text } else { format!("<p>{text}</p>\n") }
+}
+
+/// So many of them, in words: `1 flight`, `2 flights`.
+pub(crate) fn counted(count: usize, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A part of a page: a heading, a line about it, and what stands below, which is not escaped.
 pub(super) fn section(heading: &str, about: &str, content: &str) -> String {
-    let (heading, about) = (escape(heading), escape(about));
-    format!("<section>\n<h2>{heading}</h2>\n<p>{about}</p>\n{content}</section>\n")
+    format!("<section>\n<h2>{}</h2>\n{}{content}</section>\n", escape(heading), paragraph(about))
 }
 
 /// Names and values, all escaped here.
@@ -93,6 +103,12 @@ mod tests {
         assert!(!text.contains("<script") && text.contains("&lt;script&gt;alert(&quot;x&quot;)"), "{text}");
         assert_eq!(check(&text), Ok(()));
         assert_eq!(check(&page("a", &section("b", "c", &tile("d", 1, "good")))), Ok(()));
+    }
+
+    #[test]
+    fn nothing_is_said_about_a_part_of_which_there_is_nothing_to_say() {
+        assert_eq!(section("a", "", "b\n"), "<section>\n<h2>a</h2>\nb\n</section>\n");
+        assert_eq!([0, 1, 2].map(|count| counted(count, "flight")), ["0 flights", "1 flight", "2 flights"]);
     }
 
     #[test]

@@ -14,4 +14,5 @@ mod straight;
 
 pub use campaign::{CampaignRow, campaign_page};
 pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
+pub(crate) use html::counted;
 pub use overlay::Overlay;

@@ -1,7 +1,7 @@
 //! A flight as a whole, as a page.
 
 use super::{curves, way};
-use crate::report::html::{figures, page, section, tile};
+use crate::report::html::{counted, figures, page, paragraph, section, tile};
 use crate::sim::Course;
 use crate::sim::flight::{Cost, FlightConfig, Outcome, Record, Sensor, Summary};
 
@@ -28,17 +28,14 @@ impl FlightReport<'_> {
     pub fn html(&self) -> String {
         let Self { course, config, summary, .. } = *self;
         let title = format!("{}, seed {}", course.name, course.seed);
-        let mut body = format!(
-            "<p>{}</p>\n",
-            crate::report::html::escape(format_args!(
-                "policy {} over {} by {}, at {} m/s; computed on {}",
-                config.steer.policy,
-                config.steer.danger,
-                sensor(config.sensor),
-                config.speed_m_s,
-                self.backend,
-            ))
-        );
+        let mut body = paragraph(format_args!(
+            "policy {} over {} by {}, at {} m/s; computed on {}",
+            config.steer.policy,
+            config.steer.danger,
+            sensor(config.sensor),
+            config.speed_m_s,
+            self.backend,
+        ));
         body += &self.tiles();
         let about = "Solid things are gray, the middle of the way is dashed, the dotted line is the goal. The circle is the \
                      start; a cross is a crash.";
@@ -117,7 +114,7 @@ impl FlightReport<'_> {
             }
         }
         rows.push(("camera", format!("{}", config.camera.size)));
-        rows.push(("latency", format!("{} frames", config.latency_frames)));
+        rows.push(("latency", counted(config.latency_frames as usize, "frame")));
         let faults: Vec<String> = config.faults.iter().map(ToString::to_string).collect();
         rows.push(("faults", if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }));
         rows
