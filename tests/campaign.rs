@@ -142,7 +142,7 @@ fn what_does_not_belong_together_is_not_merged() {
     fs::write(folder.join("changed/results.jsonl"), changed).unwrap();
     for (other, words) in [
         ("wind", "wind/results.jsonl: configuration"),
-        ("changed", "changed/results.jsonl: the result of a job"),
+        ("changed", "changed/results.jsonl: result is that of wall:"),
         ("missing", "missing/results.jsonl"),
     ] {
         let ended = program(folder, &["campaign", "merge", "a", other, "-o", "merged"]);
@@ -216,7 +216,8 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     refused(&["campaign", "--worlds", "wall,moon"], &["moon", "wall"]);
     refused(&["campaign", "--worlds", "wall:width=900"], &["width", "900"]);
     campaign(&["--policies", "arc,bee"], &["bee", "balance"]);
-    campaign(&["--seeds", "5..5"], &["seeds", "5..5"]);
+    campaign(&["--seeds", "5..5"], &["seeds", "5..5", "LAST above FIRST"]);
+    campaign(&["--seeds", "-1..3"], &["seeds", "-1..3"]);
     campaign(&["--seeds", "x"], &["seeds", "x"]);
     campaign(&["--seeds", "0..99999999999"], &["number of flights"]);
     campaign(&["--speeds", "12,-1"], &["speed_m_s", "-1"]);
@@ -226,8 +227,10 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     campaign(&["--faults", "none,black"], &["black:0 with the sensor depth"]);
     campaign(&["--faults", "gyro-bias=5"], &["gyro-bias=5:0 with the sensor depth"]);
     campaign(&["--shard", "0/3"], &["shard", "0/3"]);
-    campaign(&["--jobs", "0"], &["--jobs", "0"]);
+    campaign(&["--jobs", "0"], &["--jobs is 0, expected 1 to 4096"]);
+    campaign(&["--jobs", "-1"], &["--jobs", "\"-1\"", "see viewsphere campaign --help"]);
+    campaign(&["--adapter", "x", "--backend", "cpu"], &["--adapter", "--backend cpu"]);
     campaign(&["--jobs", "100000"], &["--jobs", "100000"]);
-    refused(&["campaign", "merge", "-o", "a"], &["FOLDER"]);
+    refused(&["campaign", "merge", "-o", "a"], &["FOLDER", "see viewsphere campaign merge --help"]);
     refused(&["campaign", "merge", "nowhere", "-o", "a"], &["nowhere"]);
 }

@@ -6,6 +6,7 @@ mod program;
 
 use std::fs;
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 use program::{Ended, program, refused};
 use serde_json::Value;
@@ -110,7 +111,10 @@ fn a_video_shows_every_frame_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("yard.json"), YARD).unwrap();
+    fs::create_dir(folder.join("a")).unwrap();
     for sensor in [&["--sensor", "depth"][..], &["--backend", "cpu", "--size", "240x180"]] {
+        // Of an earlier flight that was measured.
+        fs::write(folder.join("a/divergence.png"), "").unwrap();
         let args = [&["fly", "--world-file", "yard.json", "--body", "turn", "-o", "a"], sensor].concat();
         let ended = program(folder, &args);
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -130,13 +134,41 @@ fn a_video_shows_every_frame_and_changes_nothing() {
             before.clone_from(&image);
         }
         assert_eq!(video.frames_read(), frames.len().div_ceil(3) as u64);
-        // The same flight without it, into the same folder: what is left of the first one would be taken for this one's.
+        // The same flight again, and without it, into the same folder: what is left of the first one would be taken for this one's.
         let whole = fs::read(folder.join("a/flight.jsonl")).unwrap();
+        assert!(matches!(program(folder, &args).code, Some(0)));
+        assert!(bytes == fs::read(folder.join("a/flight.y4m")).unwrap(), "{sensor:?}");
         let ended = program(folder, &[&args[..], &["--no-video"]].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         assert_eq!(names(&folder.join("a")), ["flight.jsonl", "report.html", "timing.json"]);
         assert!(whole == fs::read(folder.join("a/flight.jsonl")).unwrap(), "{sensor:?}");
     }
+}
+
+#[test]
+fn what_a_killed_flight_has_left_goes_with_the_next_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("yard.json"), YARD).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
+    command
+        .args(["fly", "--world", "forest:length=1000", "--sensor", "depth", "--quiet", "-o", "a"])
+        .current_dir(folder);
+    let mut killed = command.stdout(Stdio::null()).spawn().unwrap();
+    let video = |name: &String| name.starts_with(".flight.y4m.") && name.ends_with(".tmp");
+    let begun = std::time::Instant::now();
+    while !folder.join("a").exists() || !names(&folder.join("a")).iter().any(video) {
+        assert!(begun.elapsed().as_secs() < 60 && killed.try_wait().unwrap().is_none());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let args = ["fly", "--world-file", "yard.json", "--sensor", "depth", "--quiet", "-o", "a"];
+    // While it is flown the part of its video stays.
+    assert_eq!(program(folder, &args).code, Some(0));
+    assert!(names(&folder.join("a")).iter().any(video));
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert_eq!(program(folder, &args).code, Some(0));
+    assert_eq!(names(&folder.join("a")), ["flight.jsonl", "flight.y4m", "report.html", "timing.json"]);
 }
 
 #[test]
@@ -150,6 +182,18 @@ fn a_video_that_cannot_be_finished_leaves_no_part_of_it() {
     assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1), "{}", ended.stderr);
     assert!(ended.stderr.contains("flight.y4m"), "{}", ended.stderr);
     assert_eq!(names(&folder.join("a")), ["flight.y4m"]);
+}
+
+#[test]
+fn a_world_that_cannot_be_saved_leaves_no_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("here")).unwrap();
+    for (world, output) in [("none/world.json", "a/b"), ("here", "a"), ("here", "here")] {
+        let ended = fly(folder, output, &["--sensor", "depth", "--save-world", world]);
+        assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1), "{}", ended.stderr);
+        assert_eq!(names(folder), ["here"], "{world}");
+    }
 }
 
 #[test]
@@ -337,4 +381,12 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--picture-at", "1"], &["--measure"]);
     fly(&["--measure", "--picture-at", "NaN"], &["--picture-at", "NaN"]);
     fly(&["--adapter", "x"], &["--adapter", "--backend cpu"]);
+    fly(&["--adapter", "x", "--sensor", "depth"], &["--adapter", "--backend cpu"]);
+    refused(&["fly", "--world", "forest:radius=1:radius=2"], &["radius=2", "each parameter once"]);
+    fly(&["--seed", "-1"], &["--seed", "\"-1\"", "a whole number from 0 on", "see viewsphere fly --help"]);
+    fly(&["--seed", "1.5"], &["--seed", "a whole number from 0 on"]);
+    fly(&["--latency-frames", "-1"], &["--latency-frames", "-1"]);
+    fly(&["--measure", "--picture-at", "-1"], &["--picture-at is -1"]);
+    fly(&["--size", "-1x2"], &["'-1'", "no negative value is expected"]);
+    fly(&["-o", "/proc/x/y", "--sensor", "depth"], &["/proc/x/y: "]);
 }

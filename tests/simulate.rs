@@ -107,6 +107,33 @@ fn a_set_is_whole_and_its_truths_agree() {
 }
 
 #[test]
+fn a_set_of_one_frame_is_told_of_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["--seconds", "0.01", "--size", "16x12", "--backend", "cpu", "--quiet", "-o", "set"];
+    let said = run(folder.path(), &[&["simulate"], &args[..]].concat()).unwrap();
+    assert!(said.contains("0.00 s, 0.0 m;") && said.contains("set     1 frame, "), "{said}");
+    assert!(
+        fs::read_to_string(folder.path().join("set/README.md")).unwrap().contains("\n1 frame of 16×12 at")
+    );
+}
+
+#[test]
+fn a_large_set_is_announced() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
+    // It fails where it would begin to write: what is there is no data set.
+    fs::create_dir_all(folder.path().join("set/x")).unwrap();
+    let args = ["simulate", "--size", "2048x1024", "--seconds", "10", "-o", "set"];
+    let output = command.args(args).current_dir(folder.path()).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    // Pictures, flow and depth: 13 bytes for each of 2²¹ pixels.
+    assert!(
+        said.starts_with("viewsphere: up to 8.2 GB will be written: 300 frames of 2048×1024\n"),
+        "{said}"
+    );
+}
+
+#[test]
 fn pictures_of_truths_have_their_colours_and_a_scale() {
     let (folder, said) = simulated(&["--truth", "nearness,divergence,depth", "--pictures", "--speed", "10"]);
     let set = folder.path().join("set");
@@ -186,6 +213,11 @@ fn the_same_command_makes_the_same_set_and_spares_what_is_there() {
 #[test]
 fn what_is_out_of_range_is_refused_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
+    let text =
+        run(folder.path(), &["simulate", "-o", "set", "--truth", "grid", "--grid", "0x4"]).unwrap_err();
+    assert!(text.contains("0×4"), "{text}");
+    let text = run(folder.path(), &["simulate", "-o", "/proc/set"]).unwrap_err();
+    assert!(text.contains("/proc/set: "), "{text}");
     let text = run(folder.path(), &["simulate", "-o", "set", "--pictures"]).unwrap_err();
     assert!(text.contains("--pictures is on, expected divergence or nearness in --truth"), "{text}");
     for (flag, value, expected) in [
@@ -197,7 +229,9 @@ fn what_is_out_of_range_is_refused_and_leaves_nothing() {
         ("--gyro-noise", "-1", "noise_rad_s_rthz is -1"),
         ("--gyro-noise", "1e300", "expected 0 to 1"),
         ("--gyro-bias", "1e300", "expected -35 to 35"),
-        ("--grid", "0x4", "0×4"),
+        ("--grid", "4x4", "--grid is 4x4, expected none without grid in --truth"),
+        ("--fps", "-1", "-1"),
+        ("--seed", "-1", "a whole number from 0 on"),
         ("--world", "moon", "moon"),
     ] {
         let text =

@@ -1,9 +1,17 @@
 //! The flags that several subcommands share.
 
+use std::str::FromStr;
+
 use clap::{Args, ValueEnum};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::flow::{Farneback, Window};
+
+/// Reads a whole number, and says so of what is none.
+pub(super) fn whole<T: FromStr>(text: &str) -> Result<T> {
+    let wrong = |_| Error::parameter("number", format_args!("{text:?}"), "a whole number from 0 on");
+    text.trim().parse().map_err(wrong)
+}
 
 /// Parameters of the flow.
 #[derive(Args, Clone, Debug)]

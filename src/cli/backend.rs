@@ -95,12 +95,20 @@ impl BackendArgs {
     }
 
     fn named(&self) -> Result<Backend> {
+        self.check()?;
+        match self.backend {
+            Some(BackendArg::Cpu) => Ok(Backend::Cpu),
+            _ => Ok(Backend::Gpu(self.gpu()?)),
+        }
+    }
+
+    /// Checks that the two agree: for those who may have nothing to compute on what they name.
+    pub(super) fn check(&self) -> Result<()> {
         match (self.backend, &self.adapter) {
-            (Some(BackendArg::Cpu), None) => Ok(Backend::Cpu),
             (Some(BackendArg::Cpu), Some(adapter)) => {
                 Err(Error::parameter("--adapter", adapter, "none beside --backend cpu"))
             }
-            _ => Ok(Backend::Gpu(self.gpu()?)),
+            _ => Ok(()),
         }
     }
 

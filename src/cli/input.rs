@@ -1,5 +1,6 @@
 //! What the subcommands read, and whether it belongs together.
 
+use std::fs;
 use std::path::Path;
 
 use crate::error::{Error, Result};
@@ -13,12 +14,30 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
     Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
 }
 
-/// Checks that a folder can be written into, or can be made, and leaves nothing behind.
+/// Checks that a folder can be written into, or can be made, and leaves nothing behind. An error names the folder that was
+/// given, be it one above it that is at fault.
 pub(super) fn folder(path: &Path) -> Result<()> {
     let there = path.ancestors().find(|folder| folder.exists());
     // An ancestor of no name is the working folder.
     let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    check_writable(there)
+    check_writable(there).map_err(|error| match error {
+        Error::Io { source, .. } => Error::io(path, source),
+        error => error,
+    })
+}
+
+/// Makes a folder if it is not there, and does what is to be done in it. If that fails, the folders that were made and that
+/// hold nothing are taken away again.
+pub(super) fn within<T>(folder: &Path, act: impl FnOnce() -> Result<T>) -> Result<T> {
+    let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let made: Vec<&Path> = folder.ancestors().take_while(missing).collect();
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    act().inspect_err(|_| {
+        for folder in made {
+            // One that holds something stays.
+            let _ = fs::remove_dir(folder);
+        }
+    })
 }
 
 /// Checks that no input is overwritten: that a result is neither one of these files, nor goes among them where it is a

@@ -24,7 +24,7 @@ mod undistort;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::Result;
 
@@ -119,7 +119,7 @@ fn usage(error: &clap::Error) -> ExitCode {
             ExitCode::SUCCESS
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            print::note("the subcommand is missing; see viewsphere --help");
+            print::note(format_args!("the subcommand is missing; see {} --help", asked()));
             ExitCode::from(2)
         }
         _ => {
@@ -127,8 +127,25 @@ fn usage(error: &clap::Error) -> ExitCode {
             let problem = text.split("\n\nUsage:").next().unwrap_or(&text);
             let problem = problem.split("\n\nFor more").next().unwrap_or(problem);
             let problem = problem.trim_start_matches("error: ");
-            print::note(format_args!("{problem}; see viewsphere --help"));
+            // No flag begins with a digit.
+            let negative = problem.starts_with("unexpected argument '-")
+                && problem.chars().nth("unexpected argument '-".len()).is_some_and(|c| c.is_ascii_digit());
+            let hint = if negative { "; no negative value is expected there" } else { "" };
+            print::note(format_args!("{problem}{hint}; see {} --help", asked()));
             ExitCode::from(2)
         }
     }
+}
+
+/// The command whose help tells of the process's arguments, such as `viewsphere campaign merge`.
+fn asked() -> String {
+    let (mut command, mut name) = (Cli::command(), "viewsphere".to_owned());
+    for argument in std::env::args_os().skip(1) {
+        let Some(found) = argument.to_str().and_then(|argument| command.find_subcommand(argument)) else {
+            break;
+        };
+        name = format!("{name} {}", found.get_name());
+        command = found.clone();
+    }
+    name
 }

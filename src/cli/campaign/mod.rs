@@ -12,12 +12,14 @@ use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::merge::Merge;
+use super::args::whole;
 use super::backend::BackendArgs;
 use super::fly::setup::SetupArgs;
 use super::{Outcome, input, print};
 use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
+use crate::report::counted;
 use crate::sim::CourseKind;
 use crate::sim::campaign::{
     Campaign as Plan, Configuration, Ended, Faults, Job, Journal, Opened, Results, Shard, fly_all,
@@ -80,20 +82,26 @@ pub(super) struct Campaign {
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', default_value = "320x240")]
     sizes: Vec<Size>,
     /// Frames from an exposure until its command acts
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1")]
+    #[arg(
+        long,
+        value_name = "N,...",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        default_value = "1"
+    )]
     latencies: Vec<u32>,
     /// What goes wrong, as `viewsphere fly` takes it: none, one fault, or several with + between them
     #[arg(long, value_name = "FAULT[+FAULT]...,...", value_delimiter = ',', default_value = "none")]
     faults: Vec<Faults>,
     /// Seeds of the worlds: from the first until before the last, or a single one
-    #[arg(long, value_name = "FIRST..LAST", default_value = "0..10")]
+    #[arg(long, value_name = "FIRST..LAST", allow_hyphen_values = true, default_value = "0..10")]
     seeds: Seeds,
     /// Folder to write into; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER", default_value = "campaign")]
     output: PathBuf,
     /// Flights at a time [default: as many as there are cores]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZero<usize>>,
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>)]
+    jobs: Option<usize>,
     /// Fly only the I-th of N parts of the flights, I from 1 to N; `campaign merge` puts them together
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL)]
     shard: Shard,
@@ -118,7 +126,13 @@ impl FromStr for Seeds {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let wrong = || Error::parameter("seeds", format_args!("{text:?}"), "FIRST..LAST or a single one");
+        let wrong = || {
+            Error::parameter(
+                "seeds",
+                format_args!("{text:?}"),
+                "FIRST..LAST, LAST above FIRST, or a single one",
+            )
+        };
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
         let seeds = match text.split_once("..") {
             Some((first, last)) => number(first)?..number(last)?,
@@ -137,6 +151,7 @@ impl Campaign {
     }
 
     fn fly(&self) -> Result<Outcome> {
+        self.backend.check()?;
         let plan = self.plan();
         let backend = match self.sensors.contains(&Sensor::Images) {
             true => self.backend.open()?,
@@ -156,7 +171,7 @@ impl Campaign {
         jobs.retain(|job| !results.has_flown(&job.key()));
         // Seed by seed, so that there is something of every setting when it is stopped, and the time left is known early.
         jobs.sort_by_key(|job| job.seed);
-        print::note(format_args!("{} flights, {} of them done before", all, all - jobs.len()));
+        print::note(format_args!("{}, {} of them done before", counted(all, "flight"), all - jobs.len()));
         let bar = progress(&jobs);
         let open = || Ok([self.backend.open_like(&backend)?, self.backend.open_like(&backend)?]);
         let mut tally = Tally::default();
@@ -190,12 +205,11 @@ impl Campaign {
     }
 
     fn at_a_time(&self) -> Result<NonZero<usize>> {
-        let cores = || std::thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN);
-        let jobs = self.jobs.unwrap_or_else(cores);
-        if jobs.get() > MAX_JOBS {
-            return Err(Error::parameter("--jobs", jobs, format_args!("1 to {MAX_JOBS}")));
-        }
-        Ok(jobs)
+        let Some(jobs) = self.jobs else {
+            return Ok(std::thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN));
+        };
+        let wrong = || Error::parameter("--jobs", jobs, format_args!("1 to {MAX_JOBS}"));
+        NonZero::new(jobs).filter(|jobs| jobs.get() <= MAX_JOBS).ok_or_else(wrong)
     }
 }
 

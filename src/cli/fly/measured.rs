@@ -21,7 +21,7 @@ pub(super) struct MeasureArgs {
     #[arg(long)]
     pub(super) measure: bool,
     /// When divergence.png is drawn [default: when half of the way is done]; the last frame before, if the flight ends first
-    #[arg(long, value_name = "SECONDS", requires = "measure")]
+    #[arg(long, value_name = "SECONDS", requires = "measure", allow_negative_numbers = true)]
     picture_at: Option<f64>,
 }
 

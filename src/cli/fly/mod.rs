@@ -14,10 +14,11 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::log::End;
-use self::measured::{MeasureArgs, Picture};
+use self::measured::{MeasureArgs, PICTURE, Picture};
 use self::setup::SetupArgs;
 use self::timing::Costs;
 use self::video::Video;
+use super::args::whole;
 use super::backend::BackendArgs;
 use super::{Outcome, input, print};
 use crate::engine::Backend;
@@ -34,8 +35,9 @@ use crate::steer::{Danger, Policy, SteerConfig};
 ///
 /// Each frame of 30 Hz is drawn, its flow computed and steered by, until the goal is reached or something else ends the
 /// flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end and wires, with parameters after colons
-/// where others than the defaults are wanted, or one is read from a file. The same arguments give the same flight, bit for
-/// bit on the same adapter.
+/// where others than the defaults are wanted, or one is read from a file. The same arguments give the same flight: on the
+/// same adapter flight.jsonl and flight.y4m are the same byte for byte. What a frame cost, in timing.json and report.html,
+/// is another time.
 ///
 /// Written into the folder: flight.jsonl, a JSON object a line: first what the flight was (version, world, seed, all
 /// settings, and a fingerprint of the whole configuration), then each frame (frame, time_s, position_ned_m,
@@ -64,7 +66,7 @@ pub(super) struct Fly {
     #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "forest")]
     world: CourseKind,
     /// Which one of its kind
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
     /// The world from a file of JSON, made by hand or by --save-world
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "seed"])]
@@ -91,7 +93,7 @@ pub(super) struct Fly {
     #[arg(long, value_name = "WxH", default_value = "320x240")]
     size: Size,
     /// Frames from an exposure until its command acts, at most 30
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     latency_frames: u32,
     /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
     /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost. True depth shows gyro-lost alone, true
@@ -123,7 +125,7 @@ const LOG: &str = "flight.jsonl";
 const TIMING: &str = "timing.json";
 const PAGE: &str = "report.html";
 const VIDEO: &str = "flight.y4m";
-const FILES: [&str; 4] = [LOG, TIMING, PAGE, VIDEO];
+const FILES: [&str; 5] = [LOG, TIMING, PAGE, VIDEO, PICTURE];
 
 /// What is kept while it flies.
 struct Recorder {
@@ -139,6 +141,7 @@ impl Fly {
     pub(super) fn run(&self) -> Result<Outcome> {
         let config = self.config();
         config.validate()?;
+        self.backend.check()?;
         let course = self.course()?;
         input::folder(&self.output)?;
         let backends = match config.sensor {
@@ -156,11 +159,12 @@ impl Fly {
             bar: if self.quiet { ProgressBar::hidden() } else { progress(&course) },
             talks: !self.quiet,
         };
-        fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
-        if let Some(path) = &self.save_world {
-            file::write(path, &course)?;
-        }
-        let flown = self.fly(&mut flight, &mut recorder, drawing);
+        let flown = input::within(&self.output, || {
+            if let Some(path) = &self.save_world {
+                file::write(path, &course)?;
+            }
+            self.fly(&mut flight, &mut recorder, drawing)
+        });
         recorder.bar.finish_and_clear();
         self.finish(&flight, &recorder, &flown?, names)
     }
@@ -239,6 +243,8 @@ impl Fly {
         for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
             write_bytes(self.output.join(name), text.as_bytes())?;
         }
+        // That of an earlier flight would be taken for this one's.
+        remove(&self.output.join(PICTURE))?;
         let picture = recorder.picture.as_ref().map(|picture| picture.write(&self.output)).transpose()?;
         if self.json {
             print::json(&end)?;
@@ -256,7 +262,7 @@ impl Fly {
                  log        in {}{video}",
                 summary.outcome,
                 summary.time_s,
-                summary.progress_m,
+                shown(summary.progress_m),
                 summary.least_clearance_m,
                 summary.low_clearance_m,
                 summary.path_m,
@@ -321,12 +327,17 @@ impl Recorder {
             print::note(format_args!(
                 "{:.0} s, {:.0} m on the way, {:.1} m clear, bank {:+.0}°, {state}",
                 record.time_s,
-                record.progress_m,
+                shown(record.progress_m),
                 record.clearance_m,
-                record.roll_pitch_yaw_rad[0].to_degrees(),
+                shown(record.roll_pitch_yaw_rad[0].to_degrees()),
             ));
         }
     }
+}
+
+/// A value that is shown without decimals; 0 has no sign.
+fn shown(value: f64) -> f64 {
+    value.round() + 0.0
 }
 
 /// Removes a file if it is there.

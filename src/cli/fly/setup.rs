@@ -53,7 +53,7 @@ impl FromStr for Ned {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let expected = format_args!("three speeds as N,E,D, each within ±{MAX_WIND_M_S} m/s").to_string();
+        let expected = format!("three speeds as N,E,D, each within ±{MAX_WIND_M_S} m/s");
         let wrong = || Error::parameter("wind", format_args!("{text:?}"), &expected);
         let numbers: Vec<f64> =
             text.split(',').map(|part| part.trim().parse().map_err(|_| wrong())).collect::<Result<_>>()?;

@@ -51,7 +51,8 @@ impl Flown {
     /// The way from the first frame to the last, metres.
     pub(super) fn path_m(&self) -> f64 {
         let way = |pair: &[VehicleState]| pair[0].position_ned_m.distance(pair[1].position_ned_m);
-        self.steps.windows(2).map(way).sum()
+        // The sum of none is −0.
+        self.steps.windows(2).map(way).sum::<f64>() + 0.0
     }
 
     /// The least distance to anything on the way, metres.

@@ -50,7 +50,7 @@ impl Folder {
             place.with_file_name(name)
         };
         let (partial, replaced) = (beside(".partial"), beside(".replaced"));
-        input::folder(&partial)?;
+        input::folder(if place.exists() { &partial } else { place })?;
         for left in [&partial, &replaced] {
             if left.exists() {
                 fs::remove_dir_all(left).map_err(|source| Error::io(left, source))?;

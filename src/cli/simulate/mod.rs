@@ -14,12 +14,14 @@ use serde::Serialize;
 use self::flown::Flown;
 use self::folder::Folder;
 use self::truth::{Truth, Writer};
+use super::args::whole;
 use super::backend::BackendArgs;
 use super::{Outcome, print};
 use crate::camera::{self, Camera, Format};
 use crate::error::{Error, Result};
 use crate::frame::{Size, picture};
 use crate::imu::write_log;
+use crate::report::counted;
 use crate::sim::flight::camera;
 use crate::sim::vehicle::GyroErrors;
 use crate::sim::{Course, CourseKind, Random};
@@ -27,6 +29,8 @@ use crate::sim::{Sight, SightConfig};
 
 /// Steps of the vehicle in a second: of these every so manieth is a frame.
 const STEPS_PER_S: u32 = 240;
+/// A set of so many bytes is announced.
+const LARGE: f64 = 1e9;
 
 /// Make a data set: a flight through a world, its pictures, its gyro and the truth.
 ///
@@ -55,7 +59,7 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "WORLD", default_value = "city")]
     world: CourseKind,
     /// What the world and all that is random begin with
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
     /// How long the flight is, above 0 and at most 600; it ends earlier at the goal
     #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
@@ -70,7 +74,7 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "FILE", conflicts_with = "size")]
     camera: Option<PathBuf>,
     /// Frames a second: a divisor of 240
-    #[arg(long, value_name = "RATE", default_value_t = 30)]
+    #[arg(long, value_name = "RATE", default_value_t = 30, allow_negative_numbers = true)]
     fps: u32,
     /// Which truths to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
     #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
@@ -79,9 +83,9 @@ pub(super) struct Simulate {
     /// that is met in a second in full colour
     #[arg(long)]
     pictures: bool,
-    /// Azimuths and elevations of the grid of rays over the field of view
-    #[arg(long, value_name = "AZxEL", default_value = "32x24")]
-    grid: Size,
+    /// Azimuths and elevations of the grid of rays over the field of view, with grid in --truth [default: 32x24]
+    #[arg(long, value_name = "AZxEL")]
+    grid: Option<Size>,
     /// Standard deviation of the noise of the pictures, in gray levels, 0 to 64
     #[arg(long, value_name = "LEVELS", default_value_t = 2.0, allow_negative_numbers = true)]
     noise: f64,
@@ -97,6 +101,9 @@ pub(super) struct Simulate {
     /// Replace what an earlier run has written there
     #[arg(long)]
     force: bool,
+    /// Say nothing while it is made
+    #[arg(long)]
+    quiet: bool,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -133,12 +140,13 @@ impl Simulate {
         let course = self.world.course(self.seed)?;
         let errors = self.gyro_errors();
         errors.validate()?;
-        let pictures = self.pictures.then_some(self.speed);
-        let writer = Writer::new(&course.world, &camera, &self.truth, self.grid, pictures)?;
-        let mut folder = Folder::new(&self.output, self.force)?;
         let most = (self.seconds * f64::from(self.fps)).round().max(1.0) as usize;
+        self.warn(most, camera.size);
+        let pictures = self.pictures.then_some(self.speed);
+        let writer = Writer::new(&course.world, &camera, &self.truth, self.grid(), pictures)?;
+        let mut folder = Folder::new(&self.output, self.force)?;
         let flown = Flown::new(&course, self.speed, steps, most)?;
-        let bar = progress(flown.frames.len());
+        let bar = if self.quiet { ProgressBar::hidden() } else { progress(flown.frames.len()) };
         let written = self.write(&folder, &course, &camera, writer, &flown, &bar);
         bar.finish_and_clear();
         written?;
@@ -167,7 +175,30 @@ impl Simulate {
         if self.pictures && self.scales().is_none() {
             return Err(Error::parameter("--pictures", "on", "divergence or nearness in --truth"));
         }
+        if let Some(grid) = self.grid.filter(|_| !self.truth.contains(&Truth::Grid)) {
+            let found = format!("{}x{}", grid.width, grid.height);
+            return Err(Error::parameter("--grid", found, "none without grid in --truth"));
+        }
         Ok((STEPS_PER_S / self.fps) as usize)
+    }
+
+    fn grid(&self) -> Size {
+        self.grid.unwrap_or(Size::new(32, 24))
+    }
+
+    /// Says how much will be written, where that is more than is made without a thought.
+    fn warn(&self, frames: usize, size: Size) {
+        // A noisy gray picture is not made smaller by PNG.
+        let picture = size.pixels() as f64;
+        let truths: f64 = self.truth.iter().map(|truth| truth.bytes(size, self.grid())).sum();
+        let bytes = frames as f64 * (picture + truths);
+        if bytes >= LARGE && !self.quiet {
+            print::note(format_args!(
+                "up to {:.1} GB will be written: {} of {size}",
+                1e-9 * bytes,
+                counted(frames, "frame")
+            ));
+        }
     }
 
     /// What the pictures of truths show in full colour, in words.
@@ -237,13 +268,13 @@ impl Simulate {
         let ended = summary.ended.map_or(String::new(), |ended| format!(", then {ended}"));
         print::text(&format!(
             "world   {}, seed {}\nflight  {:.2} s, {:.1} m{ended}; nearest surface at {:.2} m\n\
-             set     {} frames, {:.1} MB in {}{colours}",
+             set     {}, {:.1} MB in {}{colours}",
             summary.world,
             summary.seed,
             summary.duration_s,
             summary.path_m,
             summary.least_clearance_m,
-            summary.frames,
+            counted(summary.frames, "frame"),
             summary.bytes as f64 / 1e6,
             summary.folder.display(),
         ))

@@ -7,6 +7,7 @@ use super::truth::{Truth, grid_over};
 use crate::camera::Camera;
 use crate::error::Result;
 use crate::frame::write_bytes;
+use crate::report::counted;
 use crate::sim::Course;
 
 /// Writes README.md.
@@ -21,7 +22,7 @@ pub(super) fn write(
     let mut text = format!(
         "# A flight through {name}, seed {seed}\n\n\
          Made by viewsphere {version} with\n\n    {command}\n\n\
-         {frames} frames of {size} at {fps} Hz, flown at {speed} m/s by true depth until {ended}. World, flight and gyro are \
+         {frames} of {size} at {fps} Hz, flown at {speed} m/s by true depth until {ended}. World, flight and gyro are \
          those of the seed; pictures and truth are rendered from the same surfaces.\n\n\
          | file | what it holds |\n|---|---|\n\
          | frames/NNNNNN.png | pictures, gray, 8 bits, through the lens, with noise of {levels} gray levels |\n\
@@ -35,7 +36,7 @@ pub(super) fn write(
         seed = course.seed,
         version = env!("CARGO_PKG_VERSION"),
         command = command(),
-        frames = flown.frames.len(),
+        frames = counted(flown.frames.len(), "frame"),
         size = camera.size,
         fps = args.fps,
         speed = args.speed,
@@ -43,7 +44,7 @@ pub(super) fn write(
         noise = args.gyro_errors().noise_rad_s_rthz,
         bias = args.gyro_bias,
     );
-    let grid = grid_over(camera, args.grid)?;
+    let grid = grid_over(camera, args.grid())?;
     for truth in &args.truth {
         text += &match truth {
             Truth::Flow => "| flow/NNNNNN.flo | pixels from this frame to the next one, x to the right and y down, of each \

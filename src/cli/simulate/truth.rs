@@ -42,6 +42,17 @@ impl Truth {
         }
     }
 
+    /// How long its file of a frame is, without a header.
+    pub(super) fn bytes(self, size: Size, grid: Size) -> f64 {
+        let (pixels, rays) = (size.pixels() as f64, grid.pixels() as f64);
+        match self {
+            Self::Flow => 8.0 * pixels,
+            Self::Depth | Self::Nearness | Self::Divergence => 4.0 * pixels,
+            Self::Spherical => 12.0 * pixels,
+            Self::Grid => 4.0 * rays,
+        }
+    }
+
     /// The value that a picture of it shows in full colour, where there are pictures of it: what is met in a second, a wall
     /// ahead, at this speed.
     pub(super) fn full_colour(self, speed_m_s: f64) -> Option<f64> {

@@ -52,7 +52,7 @@ impl Fault {
                 Err(Error::parameter("share of dropped frames", share, "0 to 1"))
             }
             FaultKind::GyroBias(bias_rad_s) if !(bias_rad_s.abs() <= MAX_BIAS_RAD_S) => {
-                let expected = format_args!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees()).to_string();
+                let expected = format!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees());
                 let found = format_args!("{} °/s", bias_rad_s.to_degrees());
                 Err(Error::parameter("bias of the gyro", found, expected))
             }
