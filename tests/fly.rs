@@ -387,6 +387,6 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--seed", "1.5"], &["--seed", "a whole number from 0 on"]);
     fly(&["--latency-frames", "-1"], &["--latency-frames", "-1"]);
     fly(&["--measure", "--picture-at", "-1"], &["--picture-at is -1"]);
-    fly(&["--size", "-1x2"], &["'-1'", "no negative value is expected"]);
+    fly(&["--size", "-1x2"], &["'-1'", "no negative number is expected there; see viewsphere fly"]);
     fly(&["-o", "/proc/x/y", "--sensor", "depth"], &["/proc/x/y: "]);
 }

@@ -127,14 +127,22 @@ fn usage(error: &clap::Error) -> ExitCode {
             let problem = text.split("\n\nUsage:").next().unwrap_or(&text);
             let problem = problem.split("\n\nFor more").next().unwrap_or(problem);
             let problem = problem.trim_start_matches("error: ");
-            // No flag begins with a digit.
-            let negative = problem.starts_with("unexpected argument '-")
-                && problem.chars().nth("unexpected argument '-".len()).is_some_and(|c| c.is_ascii_digit());
-            let hint = if negative { "; no negative value is expected there" } else { "" };
-            print::note(format_args!("{problem}{hint}; see {} --help", asked()));
+            print::note(format_args!(
+                "{}; see {} --help",
+                negative(problem).unwrap_or(problem.into()),
+                asked()
+            ));
             ExitCode::from(2)
         }
     }
+}
+
+/// What is said of a negative number where none can stand, which is taken for a flag: none begins with a digit.
+fn negative(problem: &str) -> Option<String> {
+    let line = problem.lines().next()?;
+    let number = line.strip_prefix("unexpected argument '-")?;
+    let is_number = number.starts_with(|c: char| c.is_ascii_digit());
+    is_number.then(|| format!("{line}, no negative number is expected there"))
 }
 
 /// The command whose help tells of the process's arguments, such as `viewsphere campaign merge`.

@@ -152,13 +152,13 @@ impl Campaign {
 
     fn fly(&self) -> Result<Outcome> {
         self.backend.check()?;
+        let at_a_time = self.at_a_time()?;
         let plan = self.plan();
         let backend = match self.sensors.contains(&Sensor::Images) {
             true => self.backend.open()?,
             false => Backend::Cpu,
         };
         plan.validate(&backend)?;
-        let at_a_time = self.at_a_time()?;
         input::folder(&self.output)?;
         let path = self.output.join(RESULTS);
         let configuration = Configuration::new(&plan.base, self.setup.text());

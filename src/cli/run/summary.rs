@@ -9,6 +9,7 @@ use crate::cli::print;
 use crate::engine::Latency;
 use crate::error::Result;
 use crate::pipeline::Invalid;
+use crate::report::counted;
 
 /// Figures over all frames.
 #[derive(Debug, Serialize)]
@@ -88,9 +89,9 @@ impl Summary {
         let kinds: Vec<String> = named.map(|(count, kind)| format!("{count} {kind}")).collect();
         let invalid = if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") };
         print::note(format_args!(
-            "{} frames, {} valid, invalid: {invalid}; {} dropped, {} with an alarm; latency median {:.2} ms, p99 {:.2} ms; \
+            "{}, {} valid, invalid: {invalid}; {} dropped, {} with an alarm; latency median {:.2} ms, p99 {:.2} ms; \
              {:.1} frames/s on {}",
-            self.frames,
+            counted(self.frames as usize, "frame"),
             self.valid,
             self.dropped,
             self.alarms,
