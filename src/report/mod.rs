@@ -14,5 +14,6 @@ mod straight;
 
 pub use campaign::{CampaignRow, campaign_page};
 pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
+#[cfg(feature = "cli")]
 pub(crate) use html::counted;
 pub use overlay::Overlay;
