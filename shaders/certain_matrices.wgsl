@@ -5,6 +5,7 @@
 struct Params {
     width: u32,
     height: u32,
+    carried: f32, // of the flow so far, in the equations: all of it, or none
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -70,7 +71,7 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
         (a.quad + b.quad + c.quad + e.quad) / sum,
         (a.cross_term + b.cross_term + c.cross_term + e.cross_term) / sum,
     );
-    let m = model(Expansion(quad_0[y * stride + x], cross_term), Second(second, inside), d);
+    let m = model(Expansion(quad_0[y * stride + x], cross_term), Second(second, inside), params.carried * d);
     let border = border_weight(x, params.width) * border_weight(y, params.height);
     // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
     let weight = certainty * select(certainty, sum, inside);

@@ -4,6 +4,7 @@
 struct Params {
     width: u32,
     height: u32,
+    carried: f32, // of the flow so far, in the equations: all of it, or none
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -48,7 +49,7 @@ struct Equations {
 fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let first = Expansion(quad_0[y * ((params.width + 3u) / 4u * 4u) + x], cross_term);
     let second = second_at(vec2f(f32(x), f32(y)) + d);
-    let m = model(first, second, d);
+    let m = model(first, second, params.carried * d);
     let weight = border_weight(x, params.width) * border_weight(y, params.height);
     let a = weight * m.a;
     let b = weight * m.delta_b;

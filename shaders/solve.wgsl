@@ -27,21 +27,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 fn store(four: u32, y: u32, equations: Five) {
     let stride = (params.width + 3u) / 4u;
-    let g_xx = equations.a;
-    let g_xy = equations.b;
-    let g_yy = equations.c;
-    let h_x = equations.d;
-    let h_y = equations.e;
-    let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + 1e-3);
-    let u = repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), 4u * four, params.width);
-    let v = repeat_last(known((g_xx * h_y - g_xy * h_x) * scale), 4u * four, params.width);
+    let d = solution(equations);
+    let u = repeat_last(d.u, 4u * four, params.width);
+    let v = repeat_last(d.v, 4u * four, params.width);
     if four < stride && y < params.height {
         flow[2u * y * stride + four] = u;
         flow[(2u * y + 1u) * stride + four] = v;
     }
-}
-
-// What overflow left without a value counts as no motion, so that it cannot spread.
-fn known(d: vec4f) -> vec4f {
-    return select(vec4f(), d, abs(d) <= vec4f(1e9));
 }

@@ -6,7 +6,7 @@ mod common;
 use common::pair::{On, flow};
 use proptest::prelude::*;
 use viewsphere::Error;
-use viewsphere::flow::{Farneback, Window};
+use viewsphere::flow::{Farneback, Update, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
 use viewsphere::kernels::cases::Random;
 
@@ -33,10 +33,12 @@ fn finite(field: &FlowField) -> bool {
 const LARGE: Size = Size::new(203, 151);
 
 fn same_twice(on: On<'_>) {
-    for window in [Window::Box, Window::Gaussian] {
-        let config = Farneback { window, ..Farneback::default() };
+    for (window, update) in
+        [(Window::Box, Update::Flow), (Window::Gaussian, Update::Flow), (Window::Gaussian, Update::Increment)]
+    {
+        let config = Farneback { window, update, ..Farneback::default() };
         let [first, second] = [(); 2].map(|()| bits(&noise_flow(on, &config, LARGE, PixelFormat::Gray8)));
-        assert!(first == second, "two runs on the {} differ, {window:?}", on.name());
+        assert!(first == second, "two runs on the {} differ, {window:?}, {update:?}", on.name());
         assert!(first.iter().any(|d| *d != first[0]), "a field of one value would show nothing");
     }
 }
@@ -94,11 +96,12 @@ fn the_gpu_gives_numbers_at_small_sizes() {
 /// Every legal parameter, as far as a plan can be checked without waiting for it.
 fn legal() -> impl Strategy<Value = Farneback> {
     let window = prop_oneof![Just(Window::Box), Just(Window::Gaussian)];
+    let update = prop_oneof![Just(Update::Flow), Just(Update::Increment)];
     let scale =
         prop_oneof![4 => 0.1..0.95, 1 => Just(f64::MIN_POSITIVE), 1 => Just(1.0 - f64::EPSILON / 2.0)];
     let sigma = prop_oneof![4 => 0.0..3.0, 1 => 0.0..=100.0];
-    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, window).prop_map(
-        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, window)| Farneback {
+    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, window, update).prop_map(
+        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, window, update)| Farneback {
             pyr_scale,
             levels,
             winsize,
@@ -106,6 +109,7 @@ fn legal() -> impl Strategy<Value = Farneback> {
             poly_n,
             poly_sigma,
             window,
+            update,
             ..Farneback::default()
         },
     )

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 
 use crate::error::{Error, Result};
-use crate::flow::{Farneback, Window};
+use crate::flow::{Farneback, Update, Window};
 
 /// Reads a whole number, and says so of what is none.
 pub(super) fn whole<T: FromStr>(text: &str) -> Result<T> {
@@ -41,6 +41,9 @@ pub(super) struct FlowArgs {
     /// Shape of the averaging window
     #[arg(long, value_enum)]
     window: Option<WindowArg>,
+    /// What the window averages in each iteration
+    #[arg(long, value_enum)]
+    update: Option<UpdateArg>,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -61,6 +64,14 @@ enum WindowArg {
     Gaussian,
 }
 
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum UpdateArg {
+    /// The flow, as OpenCV does
+    Flow,
+    /// What is added to the flow so far: finer detail from a wider window
+    Increment,
+}
+
 impl FlowArgs {
     /// The parameters, checked.
     pub(super) fn farneback(&self) -> Result<Farneback> {
@@ -73,6 +84,10 @@ impl FlowArgs {
             WindowArg::Box => Window::Box,
             WindowArg::Gaussian => Window::Gaussian,
         });
+        let update = self.update.map(|update| match update {
+            UpdateArg::Flow => Update::Flow,
+            UpdateArg::Increment => Update::Increment,
+        });
         let flow = Farneback {
             pyr_scale: self.pyr_scale.unwrap_or(preset.pyr_scale),
             levels: self.levels.unwrap_or(preset.levels),
@@ -81,6 +96,7 @@ impl FlowArgs {
             poly_n: self.poly_n.unwrap_or(preset.poly_n),
             poly_sigma: self.poly_sigma.unwrap_or(preset.poly_sigma),
             window: window.unwrap_or(preset.window),
+            update: update.unwrap_or(preset.update),
             ..preset
         };
         flow.validate()?;

@@ -23,6 +23,8 @@ params! {
         width: u32,
         /// Rows.
         height: u32,
+        /// How much of the flow so far the equations contain: 1 for a new flow, 0 for what is to be added to it.
+        carried: f32,
     }
 }
 
@@ -60,7 +62,7 @@ fn reference(
     let certainty_1 = Some(certainty_1);
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
-        let mut channels = equations_of(model, stretch);
+        let mut channels = equations_of(model, stretch, p.carried);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {
             let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
             let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
@@ -73,7 +75,15 @@ fn reference(
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height };
+    let all = [1.0, 0.0].map(|carried| {
+        let cases = carrying(size, carried);
+        cases.into_iter().map(move |case| Case { name: format!("{}, {carried} carried", case.name), ..case })
+    });
+    all.into_iter().flatten().collect()
+}
+
+fn carrying(size: Size, carried: f32) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, carried };
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
     each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };

@@ -32,9 +32,9 @@ kernel!(
 
 fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]) {
     let width = p.width as usize;
-    average(p, columns, window, confidence, 1, #[inline(always)] |[g_xx, g_xy, g_yy, rest, coverage], row| {
+    average(p, columns, window, confidence, 1, #[inline(always)] |_, averages, row| {
         for x in 0..width {
-            row[x] = trusted([g_xx[x], g_xy[x], g_yy[x], rest[x], coverage[x]]);
+            row[x] = trusted(averages.map(|average| average[x]));
         }
     });
 }

@@ -16,6 +16,8 @@ params! {
         width: u32,
         /// Rows.
         height: u32,
+        /// How much of the flow so far the equations contain: 1 for a new flow, 0 for what is to be added to it.
+        carried: f32,
     }
 }
 
@@ -44,16 +46,17 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
-    pair.each_block(equations, flow, equations_of);
+    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p.carried));
 }
 
-/// G = AᵀA and h = AᵀΔb with Δb = b + A d: channels xx, xy, yy, x, y.
+/// G = AᵀA and h = AᵀΔb with Δb = b + A d, of which so much is carried: channels xx, xy, yy, x, y.
 #[inline(always)]
-pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>) -> [Block; 5] {
+pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, carried: f32) -> [Block; 5] {
     let Stretch { u, v, weights_x, weight_y, .. } = *stretch;
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, ((u, v), weight_x)) in u.iter().zip(v).zip(weights_x).enumerate() {
         let w = weight_x * weight_y;
+        let (u, v) = (carried * u, carried * v);
         let (a_xx, a_xy, a_yy) = (model.a_xx[i], model.a_xy[i], model.a_yy[i]);
         let b_x = w * (model.b_x[i] + a_xx * u + a_xy * v);
         let b_y = w * (model.b_y[i] + a_xy * u + a_yy * v);
@@ -66,7 +69,15 @@ pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>) -> [Block; 5] {
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height };
+    let all = [1.0, 0.0].map(|carried| {
+        let cases = carrying(size, carried);
+        cases.into_iter().map(move |case| Case { name: format!("{}, {carried} carried", case.name), ..case })
+    });
+    all.into_iter().flatten().collect()
+}
+
+fn carrying(size: Size, carried: f32) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, carried };
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
     each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };

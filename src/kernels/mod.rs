@@ -48,6 +48,7 @@ registry!(
     certain_matrices,
     window_y,
     solve,
+    advance,
     residual,
     confidence,
     lens_map,

@@ -22,7 +22,7 @@ params! {
 }
 
 kernel!(
-    "solve" + ["image", "window", "average"],
+    "solve" + ["image", "window", "average", "solution"],
     reference(Params; columns, window) -> (flow),
     cases: cases,
     tolerance: Tolerance {
@@ -36,17 +36,23 @@ kernel!(
 
 fn reference(p: &Params, columns: &[f32], window: &[f32], flow: &mut [f32]) {
     let (width, _, stride) = dimensions(p.width, p.height);
-    average(p, columns, window, flow, 2, #[inline(always)] |[g_xx, g_xy, g_yy, h_x, h_y], rows| {
+    average(p, columns, window, flow, 2, #[inline(always)] |_, averages, rows| {
         let (u, v) = rows.split_at_mut(stride);
         for x in 0..width {
-            let scale = 1.0 / (g_xx[x] * g_yy[x] - g_xy[x] * g_xy[x] + REGULAR);
-            u[x] = known((g_yy[x] * h_x[x] - g_xy[x] * h_y[x]) * scale);
-            v[x] = known((g_xx[x] * h_y[x] - g_xy[x] * h_x[x]) * scale);
+            [u[x], v[x]] = displacement(averages.map(|average| average[x]));
         }
     });
 }
 
-/// Averages rows of five channels by the window and hands them to `f` with the row of the result that they belong to.
+/// The displacement that solves a pixel's equations, by Cramer's rule.
+#[inline(always)]
+pub(super) fn displacement([g_xx, g_xy, g_yy, h_x, h_y]: [f32; 5]) -> [f32; 2] {
+    let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + REGULAR);
+    [known((g_yy * h_x - g_xy * h_y) * scale), known((g_xx * h_y - g_xy * h_x) * scale)]
+}
+
+/// Averages rows of five channels by the window and hands `f` the number of each, the averages, and the row of the result
+/// that they belong to.
 #[inline(always)]
 pub(super) fn average(
     p: &Params,
@@ -54,7 +60,7 @@ pub(super) fn average(
     window: &[f32],
     result: &mut [f32],
     channels: usize,
-    f: impl Fn([&[f32]; 5], &mut [f32]) + Sync,
+    f: impl Fn(usize, [&[f32]; 5], &mut [f32]) + Sync,
 ) {
     let (width, _, stride) = dimensions(p.width, p.height);
     let radius = p.radius as usize;
@@ -70,7 +76,7 @@ pub(super) fn average(
                 extend_row(extended, &columns[(5 * (y0 + i) + channel) * stride..], width, radius);
                 weighted_sum(sum, window, |k| &extended[k..][..width]);
             }
-            f([0, 1, 2, 3, 4].map(|channel| &sums[channel * width..][..width]), rows);
+            f(y0 + i, [0, 1, 2, 3, 4].map(|channel| &sums[channel * width..][..width]), rows);
             for row in rows.chunks_exact_mut(stride) {
                 repeat_last(row, width);
             }
@@ -103,12 +109,12 @@ fn known(d: f32) -> f32 {
 /// bound grows with `S_xx S_yy / D`, as the ratio of the equations' eigenvalues does. Where D is within its roundings of
 /// zero, or d within its own of what counts as no motion, the sides may have any two displacements. Averages are those of
 /// the reference, and what follows from them is computed in `f64`.
-fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut [f32]) {
+pub(super) fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let of_row = 5 * stride;
     let averaged = |columns: &[f32]| {
         let mut sums = vec![0.0; of_row * height];
-        average(p, columns, window, &mut sums, 5, |averages, rows| {
+        average(p, columns, window, &mut sums, 5, |_, averages, rows| {
             for (row, average) in rows.chunks_exact_mut(stride).zip(averages) {
                 row[..width].copy_from_slice(average);
             }
@@ -148,7 +154,7 @@ fn apart(averages: [f64; 5], sizes: [f64; 5], terms: f64) -> [f32; 2] {
 }
 
 /// Equations of a model whose two eigenvalues lie between the given bounds, for some displacement up to 8 px.
-fn cases(size: Size) -> Vec<Case> {
+pub(super) fn cases(size: Size) -> Vec<Case> {
     let params = Params { width: size.width, height: size.height, radius: 6 };
     let window = tables::window_from(&tables::window(13, false), 8);
     let mut cases = each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {

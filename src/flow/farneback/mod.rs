@@ -22,9 +22,21 @@ pub enum Window {
     Gaussian,
 }
 
+/// What an iteration's window averages, with the flow so far d, Δb = −½ (b2(x + d) − b1(x)), and A the mean of both frames'.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Update {
+    /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as Farnebäck and OpenCV do. Where the flow changes within the window, what has
+    /// the most contrast decides.
+    Flow,
+    /// What is added to it: `d + (Σ AᵀA)⁻¹ Σ AᵀΔb`. What the flow so far knows of such changes is kept, so that a window
+    /// may be wider for the same detail, and fewer iterations do. It suits smooth windows, and one to three iterations:
+    /// with each, finer detail of flow and of noise remains.
+    Increment,
+}
+
 /// Parameters of pyramidal Farnebäck flow.
 ///
-/// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`. The source is G. Farnebäck, Two-frame
+/// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`, as far as it has them. The source is G. Farnebäck, Two-frame
 /// motion estimation based on polynomial expansion, SCIA 2003.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Farneback {
@@ -42,6 +54,8 @@ pub struct Farneback {
     pub poly_sigma: f64,
     /// The window's shape.
     pub window: Window,
+    /// What is averaged.
+    pub update: Update,
     /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
     pub initial_flow: bool,
     /// Whether each frame comes with a certainty of its pixels, a plane of values from 0 to 1. What lies outside that range
@@ -61,6 +75,7 @@ impl Default for Farneback {
             poly_n: 5,
             poly_sigma: 1.2,
             window: Window::Box,
+            update: Update::Flow,
             initial_flow: false,
             certainty: false,
             confidence: false,

@@ -1,10 +1,10 @@
 //! What is computed of two frames: on each level, coarse to fine, the equations, their average and their solution.
 
 use super::expansion::{Expansion, Expansions};
-use super::{Farneback, Window};
+use super::{Farneback, Update, Window};
 use crate::flow::levels::Level;
 use crate::kernels::{
-    area, certain_matrices, confidence, matrices, residual, solve, tables, upsample, window_y,
+    advance, area, certain_matrices, confidence, matrices, residual, solve, tables, upsample, window_y,
 };
 use crate::plan::{BufId, Bufs, Shape, Step};
 
@@ -27,6 +27,8 @@ struct MotionLevel {
     level: Level,
     /// The finest level's flow is the plan's.
     flow: Option<BufId>,
+    /// Where every other iteration's flow goes, if each is added to the one before.
+    other: Option<BufId>,
     place: Option<[BufId; 2]>,
 }
 
@@ -60,6 +62,8 @@ impl Motion {
         let motion_level = |(k, &level): (usize, &Level)| MotionLevel {
             level,
             flow: (k > 0).then(|| bufs.computed(format!("flow, level {k}"), Shape::planar(level.size, 2))),
+            other: (config.update == Update::Increment)
+                .then(|| bufs.computed(format!("flow so far, level {k}"), Shape::planar(level.size, 2))),
             place: levels.get(k + 1).map(|coarser| {
                 [
                     bufs.constant(
@@ -111,28 +115,22 @@ impl Motion {
         let mut coarser: Option<(BufId, Level)> = None;
         for (k, level) in self.levels.iter().enumerate().rev() {
             let own = level.flow.unwrap_or(flow);
-            let begin = match (coarser, &self.start) {
-                (Some((flow, of)), _) => {
-                    steps.push(self.refine(k, level, flow, of, own));
-                    own
-                }
-                (None, Start::Given(cover)) => {
-                    steps.push(self.reduce(k, level, given, *cover, own));
-                    own
-                }
-                (None, Start::Zero(zero)) => *zero,
+            // The flow after so many iterations: after all of them the level's own.
+            let after = |iterations: u32| match level.other {
+                Some(other) if !(self.iterations - iterations).is_multiple_of(2) => other,
+                _ => own,
             };
+            let mut so_far = after(0);
+            match (coarser, &self.start) {
+                (Some((flow, of)), _) => steps.push(self.refine(k, level, flow, of, so_far)),
+                (None, Start::Given(cover)) => steps.push(self.reduce(k, level, given, *cover, so_far)),
+                (None, Start::Zero(zero)) => so_far = *zero,
+            }
             let pair = [expansions.levels[k][first], expansions.levels[k][second]];
-            for i in 0..self.iterations {
-                let from = if i == 0 { begin } else { own };
-                self.iterate(
-                    &mut steps,
-                    format!("level {k}, iteration {}", i + 1),
-                    level.level,
-                    pair,
-                    from,
-                    own,
-                );
+            for i in 1..=self.iterations {
+                let label = format!("level {k}, iteration {i}");
+                self.iterate(&mut steps, label, level, pair, [so_far, after(i)]);
+                so_far = after(i);
             }
             coarser = Some((own, level.level));
             if let (0, Some(trust)) = (k, &self.trust) {
@@ -183,18 +181,19 @@ impl Motion {
         &self,
         steps: &mut Vec<Step>,
         label: String,
-        level: Level,
+        level: &MotionLevel,
         [first, second]: [Expansion; 2],
-        from: BufId,
-        flow: BufId,
+        [so_far, flow]: [BufId; 2],
     ) {
-        let (width, height) = (level.size.width, level.size.height);
-        let five = Shape::planar(level.size, 5);
+        let size = level.level.size;
+        let (width, height) = (size.width, size.height);
+        let five = Shape::planar(size, 5);
+        let carried = if level.other.is_some() { 0.0 } else { 1.0 };
         steps.push(match (first.certainty, second.certainty) {
             (Some(certainty_0), Some(certainty_1)) => Step::new(
                 &certain_matrices::KERNEL,
                 label.clone(),
-                certain_matrices::Params { width, height },
+                certain_matrices::Params { width, height, carried },
                 &[
                     first.quad,
                     first.cross_term,
@@ -202,15 +201,15 @@ impl Motion {
                     second.quad,
                     second.cross_term,
                     certainty_1,
-                    from,
+                    so_far,
                 ],
                 &[(self.equations, five)],
             ),
             _ => Step::new(
                 &matrices::KERNEL,
                 label.clone(),
-                matrices::Params { width, height },
-                &[first.quad, first.cross_term, second.quad, second.cross_term, from],
+                matrices::Params { width, height, carried },
+                &[first.quad, first.cross_term, second.quad, second.cross_term, so_far],
                 &[(self.equations, five)],
             ),
         });
@@ -221,13 +220,14 @@ impl Motion {
             &[self.equations, self.window_y],
             &[(self.columns, five)],
         ));
-        steps.push(Step::new(
-            &solve::KERNEL,
-            label,
-            solve::Params { width, height, radius: self.radius },
-            &[self.columns, self.window_x],
-            &[(flow, Shape::planar(level.size, 2))],
-        ));
+        let params = solve::Params { width, height, radius: self.radius };
+        let flow = [(flow, Shape::planar(size, 2))];
+        steps.push(match level.other {
+            None => Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow),
+            Some(_) => {
+                Step::new(&advance::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
+            }
+        });
     }
 
     /// The confidence in the finest level's flow.
