@@ -2,7 +2,7 @@
 //!
 //! A candidate is a bank that is held for a while, then level wings, with one of three climbs. It is followed as a
 //! coordinated turn (ψ̇ = g tan φ / V; the bank follows its command with a time constant and a largest rate) from the
-//! present state, the command before acting until the new one can. Its cost is that of the worst passage of an obstacle
+//! present state, the commands before acting until the new one can. Its cost is that of the worst passage of an obstacle
 //! along it, of where it leads, and of what it takes.
 
 use glam::DVec3;
@@ -35,15 +35,24 @@ pub struct Arc {
 }
 
 /// What the arcs start from.
-pub(super) struct Start {
+pub(super) struct Start<'a> {
     pub(super) moving: Moving,
     pub(super) goal: Goal,
-    /// What acts until the new command does.
+    /// What was commanded last.
     pub(super) last: Command,
+    /// What acts until the new command does, each until so many seconds from now.
+    pub(super) acting: &'a [(f64, Command)],
+}
+
+impl Start<'_> {
+    /// What acts at a time from now, before the new command does.
+    fn acting(&self, time_s: f64) -> Command {
+        self.acting.iter().find(|(until_s, _)| time_s < *until_s).map_or(self.last, |(_, command)| *command)
+    }
 }
 
 /// The cheapest arc.
-pub(super) fn cheapest(config: &SteerConfig, start: &Start, obstacles: &[Obstacle]) -> Arc {
+pub(super) fn cheapest(config: &SteerConfig, start: &Start<'_>, obstacles: &[Obstacle]) -> Arc {
     let near = Near::new(config, start.moving.speed_m_s, obstacles);
     let level = hold_altitude(config, &start.goal);
     let climbs = [level, -config.max_climb_rad, config.max_climb_rad];
@@ -75,7 +84,7 @@ pub(super) fn hold_altitude(config: &SteerConfig, goal: &Goal) -> f64 {
 
 fn arc(
     config: &SteerConfig,
-    start: &Start,
+    start: &Start<'_>,
     near: &Near,
     command: Command,
     hold_s: f64,
@@ -83,14 +92,15 @@ fn arc(
 ) -> Arc {
     let Moving { mut bank_rad, mut yaw_rad, mut climb_rad, speed_m_s } = start.moving;
     let step_s = config.horizon_s / (PLACES * STEPS) as f64;
+    let delay_s = config.latency_s + config.lag_s;
     let (mut at, mut danger) = (DVec3::ZERO, 0.0_f64);
     let mut path_ned_m = [DVec3::ZERO; PLACES];
     for (k, place) in path_ned_m.iter_mut().enumerate() {
         for step in 0..STEPS {
             let time_s = (k * STEPS + step) as f64 * step_s;
-            let wanted = if time_s < config.latency_s {
-                start.last
-            } else if time_s < config.latency_s + hold_s {
+            let wanted = if time_s < delay_s {
+                start.acting(time_s)
+            } else if time_s < delay_s + hold_s {
                 command
             } else {
                 Command { bank_rad: 0.0, ..command }
@@ -172,11 +182,12 @@ impl Near {
 mod tests {
     use super::*;
 
-    fn start(goal_yaw_rad: f64) -> Start {
+    fn start(goal_yaw_rad: f64) -> Start<'static> {
         Start {
             moving: Moving { bank_rad: 0.0, yaw_rad: 0.0, climb_rad: 0.0, speed_m_s: 12.0 },
             goal: Goal { yaw_rad: goal_yaw_rad, too_low_m: None },
             last: Command::default(),
+            acting: &[],
         }
     }
 
@@ -204,6 +215,24 @@ mod tests {
                 |o: &Obstacle| arc.path_ned_m.iter().map(|p| p.distance(o.place_ned_m)).fold(1e9, f64::min);
             assert!(wall.iter().map(least).fold(1e9, f64::min) > 2.0, "{arc:?}");
         }
+    }
+
+    /// What was commanded before leads on for as long as it acts, and the arc takes up there.
+    #[test]
+    fn earlier_commands_are_followed_while_they_act() {
+        let config = SteerConfig { latency_s: 0.1, lag_s: 0.3, ..SteerConfig::default() };
+        let near = Near::new(&config, 12.0, &[]);
+        let level = Command::default();
+        let right = Command { bank_rad: 0.8, ..level };
+        let path = |acting: &[(f64, Command)]| {
+            super::arc(&config, &Start { acting, ..start(0.0) }, &near, level, 1.0, 0.0).path_ned_m
+        };
+        let east_m = |acting: &[(f64, Command)]| path(acting)[PLACES - 1].y;
+        assert_eq!(path(&[]), path(&[(0.4, level)]));
+        let [short, long] = [0.2, 0.4].map(|until_s| east_m(&[(until_s, right), (0.4, level)]));
+        assert!(0.5 < short && short + 0.5 < long, "{short} {long}");
+        // Nothing acts beyond the delay of a new command.
+        assert_eq!(path(&[(0.4, right)]), path(&[(5.0, right)]));
     }
 
     #[test]

@@ -59,6 +59,8 @@ pub struct SteerConfig {
     pub climb_time_s: f64,
     /// From a frame's exposure until its command acts, 0 to 1.
     pub latency_s: f64,
+    /// From then until the aircraft begins to follow, 0 to 1: what actuators and the inner loop are late by.
+    pub lag_s: f64,
     /// How far ahead arcs are looked at, above 0 and at most 10.
     pub horizon_s: f64,
     /// How far obstacles are to be passed: half the wing span and a margin, above 0.
@@ -114,6 +116,7 @@ pub struct OnInvalid {
 }
 
 impl Default for SteerConfig {
+    /// For the [simulated airframe](crate::sim::vehicle::Airframe) of 1.2 kg; how it rolls is fitted to its steps.
     fn default() -> Self {
         Self {
             policy: Policy::default(),
@@ -121,10 +124,11 @@ impl Default for SteerConfig {
             body_from_camera: FRD_FROM_CAMERA,
             max_bank_rad: 60_f64.to_radians(),
             max_climb_rad: 8_f64.to_radians(),
-            bank_time_s: 0.2,
-            bank_rate_rad_s: 150_f64.to_radians(),
+            bank_time_s: 0.12,
+            bank_rate_rad_s: 115_f64.to_radians(),
             climb_time_s: 0.4,
             latency_s: 0.05,
+            lag_s: 0.09,
             horizon_s: 2.6,
             radius_m: 1.2,
             softness_m: 0.35,
@@ -159,6 +163,7 @@ impl SteerConfig {
             ("bank_rate_rad_s", self.bank_rate_rad_s, 1e-3, 100.0),
             ("climb_time_s", self.climb_time_s, 1e-3, 10.0),
             ("latency_s", self.latency_s, 0.0, 1.0),
+            ("lag_s", self.lag_s, 0.0, 1.0),
             ("horizon_s", self.horizon_s, 0.1, 10.0),
             ("radius_m", self.radius_m, 1e-3, 1e3),
             ("softness_m", self.softness_m, 1e-3, 1e3),

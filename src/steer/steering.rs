@@ -1,3 +1,5 @@
+use std::collections::VecDeque;
+
 use glam::DVec3;
 
 use super::arc::{self, Arc};
@@ -15,6 +17,10 @@ pub struct Steering {
     obstacles: Obstacles,
     arc: Option<Arc>,
     last: Command,
+    /// Commands that may still act or are yet to, oldest first, each with the time of its frame.
+    given: VecDeque<(f64, Command)>,
+    /// Those of them that act before a new one does, each until so many seconds from now.
+    acting: Vec<(f64, Command)>,
     last_heading_rad: f64,
     /// When, and how fast along north, east and down, the aircraft was last observed.
     before: Option<(f64, DVec3)>,
@@ -57,6 +63,8 @@ impl Steering {
             obstacles: Obstacles::default(),
             arc: None,
             last: Command::default(),
+            given: VecDeque::new(),
+            acting: Vec::new(),
             last_heading_rad: 0.0,
             before: None,
             seen_s: None,
@@ -90,6 +98,7 @@ impl Steering {
         self.obstacles.reset();
         (self.arc, self.last, self.last_heading_rad) = (None, Command::default(), 0.0);
         (self.before, self.seen_s) = (None, None);
+        self.given.clear();
     }
 
     /// What is to be flown from this frame on.
@@ -98,11 +107,17 @@ impl Steering {
     /// without a cue.
     pub fn update(&mut self, o: &Observation<'_>) -> Decision {
         let sound = o.time_s.is_finite() && o.ned_from_body.is_finite() && o.airspeed_m_s > 0.1;
+        if o.time_s.is_finite() {
+            self.look_back(o.time_s);
+        }
         let decision = match o.view.filter(|_| sound && o.airspeed_m_s.is_finite()) {
             Some(view) => self.steer(o, &view),
             None => self.without_cue(o.time_s),
         };
         self.last = decision.command;
+        if o.time_s.is_finite() {
+            self.given.push_back((o.time_s, decision.command));
+        }
         decision
     }
 
@@ -144,13 +159,30 @@ impl Steering {
             Policy::Potential => simple::potential(config, &moving, goal, obstacles, &level),
             Policy::Heading => simple::heading(config, &moving, goal, obstacles, &mut self.last_heading_rad),
             Policy::Arc => {
-                let start = arc::Start { moving, goal: *goal, last: self.last };
+                let start = arc::Start { moving, goal: *goal, last: self.last, acting: &self.acting };
                 self.arc.insert(arc::cheapest(config, &start, obstacles)).command
             }
         };
         let danger =
             self.arc.as_ref().map(|arc| arc.danger / self.config.weights.danger.max(f64::MIN_POSITIVE));
         Decision { command: self.config.limited(command), source: Source::Cue, danger }
+    }
+
+    /// What acts from now on until a new command does.
+    fn look_back(&mut self, time_s: f64) {
+        let delay_s = self.config.latency_s + self.config.lag_s;
+        // Where times went back, what was given since makes no sense.
+        while self.given.back().is_some_and(|(given_s, _)| *given_s >= time_s) {
+            self.given.pop_back();
+        }
+        // The oldest one acts until the second does.
+        while self.given.get(1).is_some_and(|(given_s, _)| !(given_s + delay_s > time_s)) {
+            self.given.pop_front();
+        }
+        let until_s = self.given.iter().skip(1).map(|(given_s, _)| given_s + delay_s - time_s);
+        let until_s = until_s.chain(std::iter::once(delay_s));
+        self.acting.clear();
+        self.acting.extend(until_s.zip(self.given.iter().map(|(_, command)| *command)));
     }
 
     fn without_cue(&mut self, time_s: f64) -> Decision {

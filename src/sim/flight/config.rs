@@ -3,7 +3,7 @@
 use crate::camera::{Camera, Lens};
 use crate::engine;
 use crate::error::{Error, Result};
-use crate::flow::{Farneback, Window};
+use crate::flow::{Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
@@ -31,8 +31,9 @@ pub enum Sensor {
 }
 
 /// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow in pictures of 320×240, as a
-/// flight computes it: the better half of the cells in a corridor are 0.09 px off in the median, which is a standard deviation of 0.08 px along
-/// each axis, and its window of 2.1 px and the expansion's of 1.2 px together are a Gaussian of 2.4 px.
+/// flight computes it: the better half of the cells in a corridor are 0.064 px off in the median, which is a standard
+/// deviation of 0.055 px along each axis, and what windows of 3 px on each level (with the expansion's 1.2 px) let through is
+/// halved at the same detail as by a Gaussian of 3.1 px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowNoise {
     /// Standard deviation of the Gaussian that it is blurred with, in pixels, above 0.
@@ -45,7 +46,7 @@ pub struct FlowNoise {
 
 impl Default for FlowNoise {
     fn default() -> Self {
-        Self { blur_px: 2.4, white_px: 0.08, relative: 0.03 }
+        Self { blur_px: 3.1, white_px: 0.055, relative: 0.03 }
     }
 }
 
@@ -86,7 +87,8 @@ pub struct FlightConfig {
     pub sight: SightConfig,
     /// How they are looked at. The gyro is set by the flight.
     pub pipeline: PipelineConfig,
-    /// What is done about it. The camera's mounting and the latency are set by the flight.
+    /// What is done about it. The camera's mounting and the latency are set by the flight, and how the aircraft follows
+    /// commands where that is known: of a coordinated turn.
     pub steer: SteerConfig,
     /// Frames from an exposure until its command acts, at most 30.
     pub latency_frames: u32,
@@ -120,10 +122,16 @@ impl Default for FlightConfig {
             camera: camera(Size::new(320, 240)),
             sight: SightConfig::default(),
             pipeline: PipelineConfig {
-                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; a Gaussian of
-                // 2.1 px a few per cent. What is left to find of a primed search, two iterations find.
+                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is. Of increments a
+                // wide Gaussian shows it as near as it is, and one iteration finds what is left of a primed search.
                 engine: engine::Config {
-                    flow: Farneback { iterations: 2, window: Window::Gaussian, ..Farneback::default() },
+                    flow: Farneback {
+                        winsize: 21,
+                        iterations: 1,
+                        window: Window::Gaussian,
+                        update: Update::Increment,
+                        ..Farneback::default()
+                    },
                     ..PipelineConfig::default().engine
                 },
                 sphere: Sphere {

@@ -101,6 +101,15 @@ impl Flight {
             body_from_camera: FRD_FROM_CAMERA,
             ..config.steer
         };
+        if let Body::Turn(turn) = &config.body {
+            config.steer = SteerConfig {
+                bank_time_s: turn.bank_lag_s,
+                bank_rate_rad_s: turn.bank_rate_rad_s,
+                climb_time_s: turn.climb_lag_s,
+                lag_s: 0.0,
+                ..config.steer
+            };
+        }
         course.validate()?;
         let random = Random::new(course.seed);
         let start = Start {
