@@ -18,6 +18,7 @@ struct Params {
 
 const SPAN = vec2u(1u, 1u);
 const MAX_MEMBERS = 65536u;
+const FEW = 24u; // members whose ranks are found by comparing each with each
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -50,24 +51,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let low = f32(max(valid, 1u) - 1u);
     let ranks = vec3u(vec3f(floor(low * (1.0 - params.quantile) + 0.5), floor(low * 0.5 + 0.5),
         floor(low * params.quantile + 0.5)));
-    // The value of each rank, found from its highest bit to its lowest by counting what is smaller.
-    var found = vec3u();
-    var found_div = 0u;
-    for (var bit = 0u; bit < 32u; bit++) {
-        let one = 0x80000000u >> bit;
-        let guess = found | vec3u(one);
-        let guess_div = found_div | one;
-        var below = vec3u();
-        var below_div = 0u;
-        for (var k = 0u; k < min(count, MAX_MEMBERS); k++) {
-            let at = place(u32(members[first + k]));
-            let known = looming[at.y + 3u * at.z] >= params.least_trust;
-            below += select(vec3u(), vec3u(1u), (vec3u(key(looming[at.y])) < guess) & vec3<bool>(known));
-            below_div += select(0u, 1u, known && key(max(looming[at.y + at.z], 0.0)) < guess_div);
-        }
-        found = select(guess, found, below > ranks);
-        found_div = select(guess_div, found_div, below_div > ranks.z);
-    }
+    let found = select_ranks(first, count, vec4u(ranks, ranks.z));
     let stride = (params.columns + 3u) / 4u * 4u;
     if id.x < stride && id.y < params.rows {
         let known = valid > 0u;
@@ -77,7 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         sectors[out + stride] = select(0.0, value(found.x), known);
         sectors[out + 2u * stride] = select(0.0, value(found.y), known);
         sectors[out + 3u * stride] = select(0.0, value(found.z), known);
-        sectors[out + 4u * stride] = select(0.0, value(found_div), known);
+        sectors[out + 4u * stride] = select(0.0, value(found.w), known);
         sectors[out + 5u * stride] = trust / f32(max(valid, 1u));
         sectors[out + 6u * stride] = flow.x * share;
         sectors[out + 7u * stride] = flow.y * share;
@@ -90,6 +74,48 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         sectors[out + 14u * stride] = along.z;
         sectors[out + 15u * stride] = error * share;
     }
+}
+
+// Of the known members the keys of N at three ranks and of what diverges at the last one.
+fn select_ranks(first: u32, count: u32, ranks: vec4u) -> vec4u {
+    var found = vec4u();
+    if count <= FEW {
+        // Each one's rank is how many are smaller, or equal and before it.
+        for (var k = 0u; k < min(count, FEW); k++) {
+            let one = keys_of(first + k);
+            var below = vec4u();
+            for (var j = 0u; j < min(count, FEW); j++) {
+                let other = keys_of(first + j);
+                let before = (other.keys < one.keys) | ((other.keys == one.keys) & vec4<bool>(j < k));
+                below += select(vec4u(), vec4u(1u), before & vec4<bool>(other.known));
+            }
+            found = select(found, one.keys, (below == ranks) & vec4<bool>(one.known));
+        }
+        return found;
+    }
+    // From the highest bit to the lowest by counting what is smaller.
+    for (var bit = 0u; bit < 32u; bit++) {
+        let guess = found | vec4u(0x80000000u >> bit);
+        var below = vec4u();
+        for (var k = 0u; k < min(count, MAX_MEMBERS); k++) {
+            let one = keys_of(first + k);
+            below += select(vec4u(), vec4u(1u), (one.keys < guess) & vec4<bool>(one.known));
+        }
+        found = select(guess, found, below > ranks);
+    }
+    return found;
+}
+
+struct Keys {
+    keys: vec4u, // N thrice, and what diverges
+    known: bool,
+}
+
+fn keys_of(member: u32) -> Keys {
+    let at = place(u32(members[member]));
+    let n = key(looming[at.y]);
+    let known = looming[at.y + 3u * at.z] >= params.least_trust;
+    return Keys(vec4u(n, n, n, key(max(looming[at.y + at.z], 0.0))), known);
 }
 
 // Where a cell stands in cells and in looming, and how far apart the channels are there.
