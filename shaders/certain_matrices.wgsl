@@ -76,7 +76,8 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
     // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
     let weight = certainty * select(certainty, sum, inside);
     let w = border * m.a;
-    let z = border * m.delta_b;
+    // Where the second frame has nothing to say, there is nothing to add.
+    let z = border * select(params.carried, 1.0, inside) * m.delta_b;
     let g = weight * squared(w);
     let h = weight * vec2f(w.x * z.x + w.y * z.y, w.y * z.x + w.z * z.y);
     // Equations of which nothing is certain, that overflowed or were never numbers say nothing; zeros keep that from
