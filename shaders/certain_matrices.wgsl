@@ -72,12 +72,13 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
         (a.cross_term + b.cross_term + c.cross_term + e.cross_term) / sum,
     );
     let m = model(Expansion(quad_0[y * stride + x], cross_term), Second(second, inside), params.carried * d);
-    let border = border_weight(x, params.width) * border_weight(y, params.height);
+    // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
+    let counts = select(params.carried, 1.0, inside);
+    let border = counts * border_weight(x, params.width) * border_weight(y, params.height);
     // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
     let weight = certainty * select(certainty, sum, inside);
     let w = border * m.a;
-    // Where the second frame has nothing to say, there is nothing to add.
-    let z = border * select(params.carried, 1.0, inside) * m.delta_b;
+    let z = border * m.delta_b;
     let g = weight * squared(w);
     let h = weight * vec2f(w.x * z.x + w.y * z.y, w.y * z.x + w.z * z.y);
     // Equations of which nothing is certain, that overflowed or were never numbers say nothing; zeros keep that from

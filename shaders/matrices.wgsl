@@ -50,10 +50,11 @@ fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let first = Expansion(quad_0[y * ((params.width + 3u) / 4u * 4u) + x], cross_term);
     let second = second_at(vec2f(f32(x), f32(y)) + d);
     let m = model(first, second, params.carried * d);
-    let weight = border_weight(x, params.width) * border_weight(y, params.height);
+    // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
+    let counts = select(params.carried, 1.0, second.inside);
+    let weight = counts * border_weight(x, params.width) * border_weight(y, params.height);
     let a = weight * m.a;
-    // Where the second frame has nothing to say, there is nothing to add.
-    let b = weight * select(params.carried, 1.0, second.inside) * m.delta_b;
+    let b = weight * m.delta_b;
     let g = squared(a);
     let h = vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y);
     // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.

@@ -55,13 +55,13 @@ pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, carried: f32) -
     let Stretch { u, v, weights_x, weight_y, .. } = *stretch;
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, ((u, v), weight_x)) in u.iter().zip(v).zip(weights_x).enumerate() {
-        let w = weight_x * weight_y;
+        // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
+        let counts = if model.inside[i] > 0.0 { 1.0 } else { carried };
+        let w = counts * weight_x * weight_y;
         let (u, v) = (carried * u, carried * v);
         let (a_xx, a_xy, a_yy) = (model.a_xx[i], model.a_xy[i], model.a_yy[i]);
-        // Where the second frame has nothing to say, there is nothing to add.
-        let w_b = w * if model.inside[i] > 0.0 { 1.0 } else { carried };
-        let b_x = w_b * (model.b_x[i] + a_xx * u + a_xy * v);
-        let b_y = w_b * (model.b_y[i] + a_xy * u + a_yy * v);
+        let b_x = w * (model.b_x[i] + a_xx * u + a_xy * v);
+        let b_y = w * (model.b_y[i] + a_xy * u + a_yy * v);
         let (a_xx, a_xy, a_yy) = (w * a_xx, w * a_xy, w * a_yy);
         [channels[0][i], channels[1][i], channels[2][i]] = squared(a_xx, a_xy, a_yy);
         channels[3][i] = a_xx * b_x + a_xy * b_y;
