@@ -6,6 +6,7 @@ struct Params {
     width: u32,
     height: u32,
     carried: f32, // of the flow so far, in the equations: all of it, or none
+    outside: f32, // how much counts what has run out of the second frame: as the rest, or nothing
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -72,8 +73,7 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
         (a.cross_term + b.cross_term + c.cross_term + e.cross_term) / sum,
     );
     let m = model(Expansion(quad_0[y * stride + x], cross_term), Second(second, inside), params.carried * d);
-    // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
-    let counts = select(params.carried, 1.0, inside);
+    let counts = select(params.outside, 1.0, inside);
     let border = counts * border_weight(x, params.width) * border_weight(y, params.height);
     // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
     let weight = certainty * select(certainty, sum, inside);

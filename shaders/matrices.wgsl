@@ -5,6 +5,7 @@ struct Params {
     width: u32,
     height: u32,
     carried: f32, // of the flow so far, in the equations: all of it, or none
+    outside: f32, // how much counts what has run out of the second frame: as the rest, or nothing
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -50,8 +51,7 @@ fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let first = Expansion(quad_0[y * ((params.width + 3u) / 4u * 4u) + x], cross_term);
     let second = second_at(vec2f(f32(x), f32(y)) + d);
     let m = model(first, second, params.carried * d);
-    // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
-    let counts = select(params.carried, 1.0, second.inside);
+    let counts = select(params.outside, 1.0, second.inside);
     let weight = counts * border_weight(x, params.width) * border_weight(y, params.height);
     let a = weight * m.a;
     let b = weight * m.delta_b;

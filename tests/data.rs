@@ -11,7 +11,7 @@ use std::path::Path;
 
 use common::pair::{On, flow};
 use viewsphere::eval::flow_error;
-use viewsphere::flow::{Farneback, Update, Window};
+use viewsphere::flow::{Farneback, Outside, Update, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, flo, picture};
 
 /// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a
@@ -159,6 +159,7 @@ fn increments_err_less() {
         iterations: 1,
         window: Window::Gaussian,
         update: Update::Increment,
+        outside: Outside::Nothing,
         ..Farneback::default()
     };
     for (pair, share) in PAIRS.iter().zip(SHARES) {

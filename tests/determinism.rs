@@ -6,7 +6,7 @@ mod common;
 use common::pair::{On, flow};
 use proptest::prelude::*;
 use viewsphere::Error;
-use viewsphere::flow::{Farneback, Update, Window};
+use viewsphere::flow::{Farneback, Outside, Update, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
 use viewsphere::kernels::cases::Random;
 
@@ -97,11 +97,12 @@ fn the_gpu_gives_numbers_at_small_sizes() {
 fn legal() -> impl Strategy<Value = Farneback> {
     let window = prop_oneof![Just(Window::Box), Just(Window::Gaussian)];
     let update = prop_oneof![Just(Update::Flow), Just(Update::Increment)];
+    let outside = prop_oneof![Just(Outside::First), Just(Outside::Nothing)];
     let scale =
         prop_oneof![4 => 0.1..0.95, 1 => Just(f64::MIN_POSITIVE), 1 => Just(1.0 - f64::EPSILON / 2.0)];
     let sigma = prop_oneof![4 => 0.0..3.0, 1 => 0.0..=100.0];
-    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, window, update).prop_map(
-        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, window, update)| Farneback {
+    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, window, (update, outside)).prop_map(
+        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, window, (update, outside))| Farneback {
             pyr_scale,
             levels,
             winsize,
@@ -110,6 +111,7 @@ fn legal() -> impl Strategy<Value = Farneback> {
             poly_sigma,
             window,
             update,
+            outside,
             ..Farneback::default()
         },
     )

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 
 use crate::error::{Error, Result};
-use crate::flow::{Farneback, Update, Window};
+use crate::flow::{Farneback, Outside, Update, Window};
 
 /// Reads a whole number, and says so of what is none.
 pub(super) fn whole<T: FromStr>(text: &str) -> Result<T> {
@@ -44,6 +44,9 @@ pub(super) struct FlowArgs {
     /// What the window averages in each iteration
     #[arg(long, value_enum)]
     update: Option<UpdateArg>,
+    /// What a pixel counts for where the flow leads out of the second picture
+    #[arg(long, value_enum)]
+    outside: Option<OutsideArg>,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -72,6 +75,14 @@ enum UpdateArg {
     Increment,
 }
 
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum OutsideArg {
+    /// The first picture stands alone there, as in OpenCV
+    First,
+    /// Nothing: the window's other pixels decide
+    Nothing,
+}
+
 impl FlowArgs {
     /// The parameters, checked.
     pub(super) fn farneback(&self) -> Result<Farneback> {
@@ -88,6 +99,10 @@ impl FlowArgs {
             UpdateArg::Flow => Update::Flow,
             UpdateArg::Increment => Update::Increment,
         });
+        let outside = self.outside.map(|outside| match outside {
+            OutsideArg::First => Outside::First,
+            OutsideArg::Nothing => Outside::Nothing,
+        });
         let flow = Farneback {
             pyr_scale: self.pyr_scale.unwrap_or(preset.pyr_scale),
             levels: self.levels.unwrap_or(preset.levels),
@@ -97,6 +112,7 @@ impl FlowArgs {
             poly_sigma: self.poly_sigma.unwrap_or(preset.poly_sigma),
             window: window.unwrap_or(preset.window),
             update: update.unwrap_or(preset.update),
+            outside: outside.unwrap_or(preset.outside),
             ..preset
         };
         flow.validate()?;

@@ -3,6 +3,6 @@
 mod farneback;
 mod levels;
 
-pub use farneback::{Farneback, Update, Window};
+pub use farneback::{Farneback, Outside, Update, Window};
 pub(crate) use farneback::{Parts, gray_step};
 pub use levels::{Level, levels};

@@ -14,19 +14,9 @@ use super::matrices::equations_of;
 use super::pair::{Pair, fours};
 use super::rows::dimensions;
 use crate::frame::Size;
-use crate::kernel::{Case, Tolerance, kernel, params};
+use crate::kernel::{Case, Tolerance, kernel};
 
-params! {
-    /// Shape of the picture.
-    struct Params {
-        /// Pixels in a row.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// How much of the flow so far the equations contain: 1 for a new flow, 0 for what is to be added to it.
-        carried: f32,
-    }
-}
+pub use super::matrices::Params;
 
 kernel!(
     "certain_matrices" + ["image", "equations", "second"],
@@ -62,7 +52,7 @@ fn reference(
     let certainty_1 = Some(certainty_1);
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
-        let mut channels = equations_of(model, stretch, p.carried);
+        let mut channels = equations_of(model, stretch, p);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {
             let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
             let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
@@ -75,15 +65,16 @@ fn reference(
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let all = [1.0, 0.0].map(|carried| {
-        let cases = carrying(size, carried);
-        cases.into_iter().map(move |case| Case { name: format!("{}, {carried} carried", case.name), ..case })
+    let all = [[1.0, 1.0], [0.0, 0.0]].map(|[carried, outside]| {
+        let cases = counting(size, carried, outside);
+        let name = move |name: &str| format!("{name}, {carried} carried, {outside} outside");
+        cases.into_iter().map(move |case| Case { name: name(&case.name), ..case })
     });
     all.into_iter().flatten().collect()
 }
 
-fn carrying(size: Size, carried: f32) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height, carried };
+fn counting(size: Size, carried: f32, outside: f32) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, carried, outside };
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
     each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };

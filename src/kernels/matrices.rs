@@ -18,6 +18,8 @@ params! {
         height: u32,
         /// How much of the flow so far the equations contain: 1 for a new flow, 0 for what is to be added to it.
         carried: f32,
+        /// How much a pixel counts whose place has run out of the second frame: 1, or 0 to leave it out.
+        outside: f32,
     }
 }
 
@@ -46,19 +48,18 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
-    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p.carried));
+    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p));
 }
 
 /// G = AᵀA and h = AᵀΔb with Δb = b + A d, of which so much is carried: channels xx, xy, yy, x, y.
 #[inline(always)]
-pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, carried: f32) -> [Block; 5] {
+pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params) -> [Block; 5] {
     let Stretch { u, v, weights_x, weight_y, .. } = *stretch;
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, ((u, v), weight_x)) in u.iter().zip(v).zip(weights_x).enumerate() {
-        // Where the second frame has nothing to say, there is nothing to add, and a zero would draw the neighbours' to it.
-        let counts = if model.inside[i] > 0.0 { 1.0 } else { carried };
+        let counts = if model.inside[i] > 0.0 { 1.0 } else { p.outside };
         let w = counts * weight_x * weight_y;
-        let (u, v) = (carried * u, carried * v);
+        let (u, v) = (p.carried * u, p.carried * v);
         let (a_xx, a_xy, a_yy) = (model.a_xx[i], model.a_xy[i], model.a_yy[i]);
         let b_x = w * (model.b_x[i] + a_xx * u + a_xy * v);
         let b_y = w * (model.b_y[i] + a_xy * u + a_yy * v);
@@ -71,15 +72,16 @@ pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, carried: f32) -
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let all = [1.0, 0.0].map(|carried| {
-        let cases = carrying(size, carried);
-        cases.into_iter().map(move |case| Case { name: format!("{}, {carried} carried", case.name), ..case })
+    let all = [[1.0, 1.0], [0.0, 0.0]].map(|[carried, outside]| {
+        let cases = counting(size, carried, outside);
+        let name = move |name: &str| format!("{name}, {carried} carried, {outside} outside");
+        cases.into_iter().map(move |case| Case { name: name(&case.name), ..case })
     });
     all.into_iter().flatten().collect()
 }
 
-fn carrying(size: Size, carried: f32) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height, carried };
+fn counting(size: Size, carried: f32, outside: f32) -> Vec<Case> {
+    let params = Params { width: size.width, height: size.height, carried, outside };
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
     each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };

@@ -34,6 +34,16 @@ pub enum Update {
     Increment,
 }
 
+/// What a pixel counts for whose place, where the flow so far leads, is outside the second frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// The first frame's expansion stands alone, with half its slope in place of the difference, as in OpenCV: what is found
+    /// there is arbitrary, and a confidence tells it from the rest.
+    First,
+    /// Nothing: the window's other pixels decide.
+    Nothing,
+}
+
 /// Parameters of pyramidal Farnebäck flow.
 ///
 /// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`, as far as it has them. The source is G. Farnebäck, Two-frame
@@ -56,6 +66,8 @@ pub struct Farneback {
     pub window: Window,
     /// What is averaged.
     pub update: Update,
+    /// What happens outside the second frame.
+    pub outside: Outside,
     /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
     pub initial_flow: bool,
     /// Whether each frame comes with a certainty of its pixels, a plane of values from 0 to 1. What lies outside that range
@@ -76,6 +88,7 @@ impl Default for Farneback {
             poly_sigma: 1.2,
             window: Window::Box,
             update: Update::Flow,
+            outside: Outside::First,
             initial_flow: false,
             certainty: false,
             confidence: false,

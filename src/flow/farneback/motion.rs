@@ -1,7 +1,7 @@
 //! What is computed of two frames: on each level, coarse to fine, the equations, their average and their solution.
 
 use super::expansion::{Expansion, Expansions};
-use super::{Farneback, Update, Window};
+use super::{Farneback, Outside, Update, Window};
 use crate::flow::levels::Level;
 use crate::kernels::{
     advance, area, certain_matrices, confidence, matrices, residual, solve, tables, upsample, window_y,
@@ -14,6 +14,8 @@ pub(super) struct Motion {
     pyr_scale: f64,
     iterations: u32,
     radius: u32,
+    /// How much what is outside the second frame counts.
+    outside: f32,
     window_y: BufId,
     window_x: BufId,
     equations: BufId,
@@ -84,6 +86,7 @@ impl Motion {
             pyr_scale: config.pyr_scale,
             iterations: config.iterations,
             radius: radius as u32,
+            outside: if config.outside == Outside::First { 1.0 } else { 0.0 },
             window_y: bufs.constant("window, columns", tables::window_from(&window, radius)),
             window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
@@ -188,12 +191,17 @@ impl Motion {
         let size = level.level.size;
         let (width, height) = (size.width, size.height);
         let five = Shape::planar(size, 5);
-        let carried = if level.other.is_some() { 0.0 } else { 1.0 };
+        let equations = matrices::Params {
+            width,
+            height,
+            carried: if level.other.is_some() { 0.0 } else { 1.0 },
+            outside: self.outside,
+        };
         steps.push(match (first.certainty, second.certainty) {
             (Some(certainty_0), Some(certainty_1)) => Step::new(
                 &certain_matrices::KERNEL,
                 label.clone(),
-                certain_matrices::Params { width, height, carried },
+                equations,
                 &[
                     first.quad,
                     first.cross_term,
@@ -208,7 +216,7 @@ impl Motion {
             _ => Step::new(
                 &matrices::KERNEL,
                 label.clone(),
-                matrices::Params { width, height, carried },
+                equations,
                 &[first.quad, first.cross_term, second.quad, second.cross_term, so_far],
                 &[(self.equations, five)],
             ),
