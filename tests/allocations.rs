@@ -3,7 +3,8 @@
 //! On the CPU it is nothing: where a picture is large enough to be shared out, rayon takes a block for its queue of jobs
 //! now and then. On the GPU wgpu allocates in every submission, so the engine is held against the same work done with
 //! wgpu by hand. The two differ by a few, within [`SLACK`] a frame: wgpu itself is not the same in both (a bare `unmap`
-//! was seen to take two more in the engine, a submission three fewer). So the bound shows that nothing as large as a
+//! was seen to take two more in the engine, a submission three fewer), and less so the busier the machine is: 2.3 more in
+//! the engine on an idle one, 4.8 on one that had four things to do for each two cores. So the bound shows that nothing as large as a
 //! buffer or as many as a step's worth is ours; that what is held does not grow is exact.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
@@ -47,7 +48,7 @@ unsafe impl GlobalAlloc for Counting {
 const WARM_UP: usize = 30;
 const FRAMES: usize = 300;
 /// Allocations of a frame, of about a hundred, that the engine may have more than the work by hand.
-const SLACK: u64 = 4;
+const SLACK: u64 = 8;
 
 /// Two frames of noise.
 fn noise(size: Size) -> [Vec<u8>; 2] {
