@@ -7,9 +7,10 @@ use common::sides::compare_sides;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, area, binomial, cast, cells, certain_expansion_x, certain_expansion_y, certain_matrices, compare,
-    confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices, prime, remap, resample_x,
-    resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample, weigh, window_y,
+    ALL, advance, area, binomial, cast, cells, certain_expansion_x, certain_expansion_y, certain_matrices,
+    compare, confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices, prime, remap,
+    resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample, weigh,
+    window_y,
 };
 
 /// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
@@ -53,6 +54,8 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&matrices::KERNEL, "whole < vec2f(f32(params.width)", "whole <= vec2f(f32(params.width)"),
     (&matrices::KERNEL, "0.5 * (first.quad.w + other.quad.w)", "first.quad.w"),
     (&matrices::KERNEL, "place - whole", "place"),
+    (&matrices::KERNEL, "params.carried * d", "d"),
+    (&matrices::KERNEL, "select(params.outside, 1.0, second.inside)", "1.0"),
     (&window_y::KERNEL, "i32(params.height - 1u) * row", "i32(max(params.height, 2u) - 2u) * row"),
     (&window_y::KERNEL, "clamp(at, first, last)", "max(at, 0)"),
     (&window_y::KERNEL, "(2u * params.radius + 4u) / 4u", "(2u * params.radius) / 4u"),
@@ -64,8 +67,10 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&solve::KERNEL, "g_xx * g_yy - g_xy * g_xy", "g_xx * g_yy - 0.9999 * g_xy * g_xy"),
     (&solve::KERNEL, "g_yy * h_x - g_xy * h_y", "g_yy * h_x - 1.0001 * g_xy * h_y"),
     (&solve::KERNEL, "let last = i32(stride) - 1", "let last = i32(stride) - 2"),
-    (&solve::KERNEL, "repeat_last(known((g_yy * h_x - g_xy * h_y) * scale), 4u * four, params.width)",
-        "known((g_yy * h_x - g_xy * h_y) * scale)"),
+    (&solve::KERNEL, "repeat_last(d.u, 4u * four, params.width)", "d.u"),
+    (&advance::KERNEL, "so_far[row] + d.u", "d.u"),
+    (&advance::KERNEL, "so_far[row + stride]", "so_far[row]"),
+    (&advance::KERNEL, "2u * min(y, params.height - 1u) * stride", "min(y, params.height - 1u) * stride"),
     (&residual::KERNEL, "select(0.0, certainty[i], second.inside)", "certainty[i]"),
     (&residual::KERNEL, "second, vec2f());", "second, d);"),
     (&confidence::KERNEL, "(g_xx + g_yy) - sqrt", "(g_xx + g_yy) + sqrt"),
@@ -74,6 +79,8 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
     (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
     (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
+    (&certain_matrices::KERNEL, "params.carried * d", "d"),
+    (&certain_matrices::KERNEL, "select(params.outside, 1.0, inside)", "1.0"),
     (&prime::KERNEL, " - current.xy * moved.z", ""),
     (&tangent::KERNEL, "-shift - (previous - unturned)", "-shift"),
     (&tangent::KERNEL, "r.y * motion[1].xyz", "r.y * motion[2].xyz"),
@@ -88,6 +95,7 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&looming::KERNEL, "i <= params.radius + params.inner", "i <= params.radius"),
     (&sectors::KERNEL, "max(looming[at.y + at.z], 0.0)", "looming[at.y + at.z]"),
     (&sectors::KERNEL, "below > ranks", "below >= ranks"),
+    (&sectors::KERNEL, "before & vec4<bool>(other.known)", "before"),
     (&sectors::KERNEL, "normal.xxy * normal.yzz", "normal.xxy * normal.yyz"),
     (&lens_map::KERNEL, "s * b.w", "s * a.w"),
     (&lens_map::KERNEL, "a.z * (s + 2.0 * y * y)", "a.z * (s + 2.0 * x * x)"),
