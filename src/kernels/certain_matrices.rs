@@ -10,7 +10,7 @@
 //! Normalized and differential convolution, CVPR 1993.
 
 use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::matrices::equations_of;
+use super::matrices::{both, equations_of};
 use super::pair::{Pair, fours};
 use super::rows::dimensions;
 use crate::frame::Size;
@@ -65,18 +65,12 @@ fn reference(
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let all = [[1.0, 1.0], [0.0, 0.0]].map(|[carried, outside]| {
-        let cases = counting(size, carried, outside);
-        let name = move |name: &str| format!("{name}, {carried} carried, {outside} outside");
-        cases.into_iter().map(move |case| Case { name: name(&case.name), ..case })
-    });
-    all.into_iter().flatten().collect()
+    both(size, counting)
 }
 
-fn counting(size: Size, carried: f32, outside: f32) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height, carried, outside };
+fn counting(size: Size, params: &Params) -> Vec<Case> {
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
+    each_fill(Fill::ALL, bytemuck::bytes_of(params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };
         // Flows of 0 keep whole places, where a wrong border shows; a flow of 10¹² is far outside.
         let near = if fill == Fill::Extreme { 0.0 } else { -6.0 };

@@ -72,18 +72,22 @@ pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params) -> 
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let all = [[1.0, 1.0], [0.0, 0.0]].map(|[carried, outside]| {
-        let cases = counting(size, carried, outside);
-        let name = move |name: &str| format!("{name}, {carried} carried, {outside} outside");
-        cases.into_iter().map(move |case| Case { name: name(&case.name), ..case })
+    both(size, counting)
+}
+
+/// Cases in which the flow so far and what is outside count, and cases in which neither does.
+pub(super) fn both(size: Size, counting: impl Fn(Size, &Params) -> Vec<Case>) -> Vec<Case> {
+    let all = [1.0, 0.0].map(|share| {
+        let params = Params { width: size.width, height: size.height, carried: share, outside: share };
+        let cases = counting(size, &params).into_iter();
+        cases.map(move |case| Case { name: format!("{}, {share} carried and outside", case.name), ..case })
     });
     all.into_iter().flatten().collect()
 }
 
-fn counting(size: Size, carried: f32, outside: f32) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height, carried, outside };
+fn counting(size: Size, params: &Params) -> Vec<Case> {
     let ranges = [[-20.0, 20.0], [-20.0, 20.0], [-4.0, 4.0], [-4.0, 4.0]];
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
+    each_fill(Fill::ALL, bytemuck::bytes_of(params), &[5 * size.stride()], size, |fill| {
         let far = if fill == Fill::Extreme { 1e12 } else { 6.0 };
         // Flows of 0 keep whole places, where a wrong border shows; a flow of 10¹² is far outside.
         let near = if fill == Fill::Extreme { 0.0 } else { -6.0 };

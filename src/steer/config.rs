@@ -116,7 +116,7 @@ pub struct OnInvalid {
 }
 
 impl Default for SteerConfig {
-    /// For the [simulated airframe](crate::sim::vehicle::Airframe) of 1.2 kg; how it rolls is fitted to its steps.
+    /// For the simulator's airframe of 1.2 kg; how it rolls is fitted to its steps.
     fn default() -> Self {
         Self {
             policy: Policy::default(),

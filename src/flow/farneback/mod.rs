@@ -46,8 +46,8 @@ pub enum Outside {
 
 /// Parameters of pyramidal Farnebäck flow.
 ///
-/// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`, as far as it has them. The source is G. Farnebäck, Two-frame
-/// motion estimation based on polynomial expansion, SCIA 2003.
+/// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`, as far as it has them. The source is
+/// G. Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Farneback {
     /// A level's size against the next finer one, in (0, 1).

@@ -122,8 +122,8 @@ impl Default for FlightConfig {
             camera: camera(Size::new(320, 240)),
             sight: SightConfig::default(),
             pipeline: PipelineConfig {
-                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is. Of increments a
-                // wide Gaussian shows it as near as it is, and one iteration finds what is left of a primed search.
+                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; of increments a
+                // wide Gaussian a few per cent. One iteration finds what is left of a primed search.
                 engine: engine::Config {
                     flow: Farneback {
                         winsize: 21,
