@@ -154,14 +154,7 @@ fn the_gpu_errs_as_opencv_does() {
 fn increments_err_less() {
     const SHARES: [f64; 5] = [0.85, 0.8, 0.9, 0.3, 0.45];
     let Some(folder) = common::data("") else { return };
-    let config = Farneback {
-        winsize: 31,
-        iterations: 1,
-        window: Window::Gaussian,
-        update: Update::Increment,
-        outside: Outside::Nothing,
-        ..Farneback::default()
-    };
+    let config = Farneback::increment();
     for (pair, share) in PAIRS.iter().zip(SHARES) {
         let images = pair.images.map(|file| gray(&folder.join(file)));
         let truth = flo::read(folder.join(pair.truth)).unwrap();

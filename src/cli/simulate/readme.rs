@@ -93,7 +93,9 @@ pub(super) fn write(
              \x20   viewsphere flow 'frames/%06d.png' -o estimate/\n\
              \x20   viewsphere eval --truth flow/000000.flo estimate/000000.flo\n\
              \x20   viewsphere run 'frames/%06d.png' --camera camera.yaml --times times.csv --gyro gyro.csv \
-             --camera-from-gyro frd\n";
+             --camera-from-gyro frd\n\n\
+             A sky has a true flow but no texture, and counts in `eval` unless it is left out with `--mask`: it is where depth \
+             is infinite.\n";
     write_bytes(folder.path("README.md"), text.as_bytes())
 }
 

@@ -29,8 +29,10 @@ pub enum Update {
     /// the most contrast decides.
     Flow,
     /// What is added to it: `d + (Σ AᵀA)⁻¹ Σ AᵀΔb`. What the flow so far knows of such changes is kept, so that a window
-    /// may be wider for the same detail, and fewer iterations do. It suits smooth windows, and one to three iterations:
-    /// with each, finer detail of flow and of noise remains.
+    /// may be wider for the same detail, and fewer iterations do. One to three suit it: with each, finer detail of flow and
+    /// of noise remains. After one, [`Window::Box`] is refused: it turns round what has waves a little shorter than itself
+    /// (its spectrum is there down to −0.22), and each further iteration makes more of those. Where there is no texture at
+    /// all, as in a cloudless sky, noise is what remains, where [`Update::Flow`] finds next to no motion.
     Increment,
 }
 
@@ -107,7 +109,20 @@ impl Farneback {
         Self { levels: 5, winsize: 13, iterations: 10, poly_sigma: 1.1, ..Self::default() }
     }
 
-    /// Checks every parameter's range.
+    /// One iteration of [`Update::Increment`] over a Gaussian window of 31 px, [`Outside::Nothing`]: about half the default's
+    /// work and .27 to .86 of its error on public pairs; made for scenes that have texture everywhere.
+    pub fn increment() -> Self {
+        Self {
+            winsize: 31,
+            iterations: 1,
+            window: Window::Gaussian,
+            update: Update::Increment,
+            outside: Outside::Nothing,
+            ..Self::default()
+        }
+    }
+
+    /// Checks every parameter's range, and that errors do not grow with the iterations (see [`Update::Increment`]).
     ///
     /// # Errors
     /// [`Error::Parameter`], naming the first one that is out of range.
@@ -127,6 +142,10 @@ impl Farneback {
             if !(low..=high).contains(&value) {
                 return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
             }
+        }
+        if (self.window, self.update) == (Window::Box, Update::Increment) && self.iterations > 1 {
+            let expected = "1 where a box averages increments, as errors grow with each further one, or a Gaussian window";
+            return Err(Error::parameter("iterations", self.iterations, expected));
         }
         Ok(())
     }
