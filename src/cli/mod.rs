@@ -27,6 +27,10 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::Result;
+use crate::frame::discard_and_exit;
+
+/// The exit code of a program that was stopped by a signal, as shells give it.
+const INTERRUPTED: i32 = 130;
 
 /// Dense optical flow on the GPU and the CPU, with a stated bound between them.
 #[derive(Parser, Debug)]
@@ -46,7 +50,7 @@ Examples:
   viewsphere campaign --worlds wall,city --seeds 0..100    how often that goes well
   viewsphere devices                                 what there is to compute on
 
-Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what."
+Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what; 130 stopped by a signal."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -78,6 +82,8 @@ enum Outcome {
 /// Runs the program on the process's arguments. To be called before any thread is started.
 pub fn main() -> ExitCode {
     environment::prepare();
+    // Without a handler the program is stopped all the same; what it leaves goes with the next file of the same name.
+    let _ = ctrlc::set_handler(|| discard_and_exit(INTERRUPTED));
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),

@@ -19,6 +19,7 @@ mod raw;
 mod read;
 pub mod sequence;
 mod size;
+mod temporary;
 mod types;
 mod write;
 mod y4m;
@@ -32,7 +33,9 @@ pub use flow_file::{read_flow, write_flow};
 pub use frames::Frames;
 pub use raw::RawReader;
 pub use size::Size;
+#[cfg(feature = "cli")]
+pub(crate) use temporary::discard_and_exit;
 pub use types::{FlowField, Frame, Image, PixelFormat, Plane, UNKNOWN_FLOW};
-pub use write::{check_writable, write_atomic, write_bytes};
+pub use write::{check_writable, remove, write_atomic, write_bytes};
 pub use y4m::Y4mReader;
 pub use y4m_write::Y4mWriter;

@@ -6,9 +6,9 @@ pub(super) mod setup;
 mod timing;
 mod video;
 
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -23,7 +23,7 @@ use super::backend::BackendArgs;
 use super::{Outcome, input, print};
 use crate::engine::Backend;
 use crate::error::{Error, Result};
-use crate::frame::{Size, write_atomic, write_bytes};
+use crate::frame::{Size, remove, write_atomic, write_bytes};
 use crate::report::flight::{FlightReport, FlightVideo};
 use crate::sim::campaign::Faults;
 use crate::sim::course::file;
@@ -96,11 +96,11 @@ pub(super) struct Fly {
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     latency_frames: u32,
     /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
-    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost. True depth shows gyro-lost alone, true
+    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost (once, without UNTIL). True depth shows gyro-lost alone, true
     /// flow gyro-bias too, images all
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
-    /// Folder to write into; it is made if it is not there
+    /// Folder to write into; it is made if it is not there. Files of an earlier flight are replaced, others of these names not
     #[arg(short, long, value_name = "FOLDER", default_value = "flight")]
     output: PathBuf,
     /// Make no flight.y4m; what an earlier flight has left of it in the folder is removed
@@ -144,6 +144,7 @@ impl Fly {
         self.backend.check()?;
         let course = self.course()?;
         input::folder(&self.output)?;
+        self.spare()?;
         let backends = match config.sensor {
             Sensor::Images => self.backend.open_pair()?,
             _ => [Backend::Cpu, Backend::Cpu],
@@ -167,6 +168,21 @@ impl Fly {
         });
         recorder.bar.finish_and_clear();
         self.finish(&flight, &recorder, &flown?, names)
+    }
+
+    /// Checks that the files which would be replaced are those of a flight.
+    fn spare(&self) -> Result<()> {
+        let begins = |line: String| line.starts_with("{\"viewsphere\":");
+        let log = File::open(self.output.join(LOG)).map(BufReader::new);
+        let flown = log.is_ok_and(|log| log.lines().next().is_some_and(|line| line.is_ok_and(begins)));
+        let there = FILES.map(|name| self.output.join(name)).into_iter().find(|path| path.is_file());
+        match there {
+            Some(path) if !flown => {
+                let expected = "a folder without it, or one with the flight.jsonl of an earlier flight";
+                Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn course(&self) -> Result<Course> {
@@ -338,14 +354,6 @@ impl Recorder {
 /// A value that is shown without decimals; 0 has no sign.
 fn shown(value: f64) -> f64 {
     value.round() + 0.0
-}
-
-/// Removes a file if it is there.
-fn remove(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(Error::io(path, source)),
-        _ => Ok(()),
-    }
 }
 
 /// What computed, for the reader; without pictures nothing but the CPU does.

@@ -42,8 +42,9 @@ pub(super) fn sections(report: &FlightReport<'_>) -> String {
         &section("Control", "What acts and what is flown; positive is the right wing down.", &over.bank());
     html += &section(
         "Time to contact",
-        "Along the direction of motion, as the view says and in truth; and the relative error where the truth is between \
-         0.7 and 4 s, held at the border beyond 50 %.",
+        "Along the direction of motion: as the view says, the median of the sectors around it; in truth, along the one ray, which \
+         hits a thin thing or passes it. And the relative error where the truth is between 0.7 and 4 s, held at the border \
+         beyond 50 %. It is no measure of the flow: that compares cell by cell (fly --measure).",
         &(over.contact() + &over.error()),
     );
     html += &section(

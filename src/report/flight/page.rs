@@ -3,7 +3,7 @@
 use super::{curves, way};
 use crate::report::html::{counted, figures, page, paragraph, section, tile};
 use crate::sim::Course;
-use crate::sim::flight::{Cost, FlightConfig, Outcome, Record, Sensor, Summary};
+use crate::sim::flight::{Body, Cost, FlightConfig, Measured, Outcome, Record, Sensor, Summary};
 
 /// A flight that is over, and what it was flown with.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,10 @@ impl FlightReport<'_> {
                 100.0 * median,
                 100.0 * high
             );
-            rows.push(("time to contact ahead, relative error", text));
+            rows.push(("time to contact ahead, sectors against one ray, relative error", text));
+        }
+        if let Some(measured) = &summary.measured {
+            rows.extend(measured_rows(measured));
         }
         let headings: Vec<f64> = self.records.iter().filter_map(|record| record.heading_error_rad).collect();
         if let Some(median) = quantile(headings, 0.5) {
@@ -114,11 +117,47 @@ impl FlightReport<'_> {
             }
         }
         rows.push(("camera", format!("{}", config.camera.size)));
+        rows.push(("body, air", air(config)));
         rows.push(("latency", counted(config.latency_frames as usize, "frame")));
         let faults: Vec<String> = config.faults.iter().map(ToString::to_string).collect();
         rows.push(("faults", if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }));
         rows
     }
+}
+
+/// What `measure` says, where it says something.
+fn measured_rows(measured: &Measured) -> Vec<(&'static str, String)> {
+    let flow = [measured.better_half_error_px, measured.trusted_error_px];
+    let flow = if let [Some(better), Some(all)] = flow {
+        let trusted = 100.0 * measured.trusted;
+        let text = format!(
+            "{better:.3} px in the better half of the trusted cells, {all:.3} px in all ({trusted:.0} %)"
+        );
+        Some(("flow against the true one, medians", text))
+    } else {
+        None
+    };
+    let contact = measured.contact_error.map(|error| {
+        let text =
+            format!("{:.1} % in {} cells with 0.7 to 4 s to go", 100.0 * error, measured.contact_cells);
+        ("time to contact against the true one, cell by cell, median", text)
+    });
+    flow.into_iter().chain(contact).collect()
+}
+
+/// What flies, and in what air.
+fn air(config: &FlightConfig) -> String {
+    let body = match config.body {
+        Body::Turn(_) => "coordinated turns",
+        Body::Airframe { .. } => "rigid airframe",
+    };
+    let [north, east, down] = config.wind_ned_m_s.to_array();
+    let gusts = config.gusts.as_ref().map_or("no gusts".to_owned(), |gusts| {
+        let [north, east, down] = gusts.intensity_m_s.to_array();
+        format!("gusts of {north} {east} {down} m/s (standard deviation)")
+    });
+    let vanes = if config.vanes.is_some() { "vanes" } else { "no vanes" };
+    format!("{body}; wind {north} {east} {down} m/s to north, east and down; {gusts}; {vanes}")
 }
 
 fn sensor(sensor: Sensor) -> &'static str {

@@ -24,7 +24,8 @@ pub(super) struct CameraEye {
     image: Image,
     random: Random,
     seed: u64,
-    destroyed: bool,
+    /// How often the device was lost so far.
+    losses: usize,
     measure: Option<Measure>,
 }
 
@@ -43,7 +44,7 @@ impl CameraEye {
         let view = &config.pipeline.sphere;
         let measure = config.measure.then(|| Measure::new(pipeline.ideal(), pipeline.cells().size, view));
         let measure = measure.transpose()?;
-        Ok(Self { sight, pipeline, image, random, seed, destroyed: false, measure })
+        Ok(Self { sight, pipeline, image, random, seed, losses: 0, measure })
     }
 
     pub(super) fn push_gyro(&mut self, sample: GyroSample) {
@@ -78,8 +79,10 @@ impl CameraEye {
             let invalid = Some("the frame was dropped".to_owned());
             return Ok(Said { image: Some(&self.image), invalid, ..Said::default() });
         }
-        if acts(FaultKind::DeviceLost) && !self.destroyed {
-            self.destroyed = true;
+        let due = |fault: &&Fault| fault.kind == FaultKind::DeviceLost && fault.from_s <= at.time_s;
+        let due = faults.iter().filter(due).count();
+        if due > self.losses {
+            self.losses = due;
             if let Some(gpu) = self.pipeline.engine().gpu() {
                 gpu.device().destroy();
             }

@@ -22,7 +22,7 @@ pub enum FaultKind {
     GyroBias(f64),
     /// The frames' times are not numbers.
     NotANumber,
-    /// The device that computes the flow is destroyed, once, at the beginning.
+    /// The device that computes the flow is destroyed, once: it has no end, and a flight may have several.
     DeviceLost,
 }
 
@@ -38,7 +38,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// Checks the times, and the share or the bias.
+    /// Checks the times, and the share or the bias; what happens once has no end.
     ///
     /// # Errors
     /// [`Error::Parameter`] for what is out of range.
@@ -48,6 +48,11 @@ impl Fault {
             return Err(Error::parameter("fault", found, "from 0 or later until after that"));
         }
         match self.kind {
+            FaultKind::DeviceLost if self.until_s.is_finite() => Err(Error::parameter(
+                "end of device-lost",
+                format_args!("{} s", self.until_s),
+                "none, as it happens once",
+            )),
             FaultKind::Dropped(share) if !(0.0..=1.0).contains(&share) => {
                 Err(Error::parameter("share of dropped frames", share, "0 to 1"))
             }
@@ -177,9 +182,10 @@ mod tests {
             "dropped=nan",
             "nan:-1",
             "gyro-bias=2006",
+            "device-lost:2..4",
         ] {
             let error = text.parse::<Fault>().unwrap_err().to_string();
-            assert!(["fault", "share", "bias"].iter().any(|word| error.contains(word)), "{error}");
+            assert!(["fault", "share", "bias", "end"].iter().any(|word| error.contains(word)), "{error}");
             assert!(!error.contains('\n'), "{error}");
         }
     }

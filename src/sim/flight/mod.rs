@@ -297,6 +297,7 @@ fn record(
     let ahead = at.pose.world_from_camera.transpose() * motion.normalize_or(DVec3::X);
     let true_rate_hz = course.world.seen(&at.pose, ahead).nearness_per_m * motion.length();
     let heading = said.view.map(|view| view.heading).filter(Heading::is_known);
+    let sectors = said.view.map(|view| view.sectors).or(said.cue.as_ref().map(|cue| cue.sectors));
     let contact_s = said.view.and_then(|View { sectors, .. }| ahead_s(sectors, ahead));
     Record {
         frame: at.frame,
@@ -310,7 +311,7 @@ fn record(
         progress_m: course.progress_m(state.position_ned_m),
         offset_m: course.offset_m(state.position_ned_m),
         invalid: said.invalid.clone(),
-        coverage: said.view.map_or(0.0, |view| view.sectors.coverage()),
+        coverage: sectors.map_or(0.0, Sectors::coverage),
         heading_error_rad: heading.map(|heading| heading.direction.angle_between(ahead)),
         contact_s,
         true_contact_s: (true_rate_hz > 0.0).then(|| true_rate_hz.recip()),
