@@ -39,7 +39,8 @@ const RESULTS: &str = "results.jsonl";
 /// square); the share of time without a cue; the offset from the middle of the way where there is one.
 ///
 /// It can be stopped at any time: called again it goes on where it was, tries again what failed with an error, and flies
-/// what was added to the lists. Results of another version or configuration are refused. The table is of all results in the
+/// what was added to the lists. Results of another version, configuration or adapter are refused; only merge brings those of
+/// several adapters together, and the table names them. The table is of all results in the
 /// folder. The same flights give the same files, however many are flown at a time.
 #[derive(Args, Debug)]
 #[command(
@@ -165,6 +166,9 @@ impl Campaign {
         let Opened { mut journal, mut results, repaired } = Journal::open(&path, &configuration)?;
         if repaired {
             print::note(format_args!("{}: dropped a half-written line at its end", path.display()));
+        }
+        if self.sensors.contains(&Sensor::Images) {
+            results.check_adapter(&path, &backend.name())?;
         }
         let mut jobs = self.shard.part(plan.jobs());
         let all = jobs.len();

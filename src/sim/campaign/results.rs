@@ -117,6 +117,22 @@ impl Results {
         Ok(())
     }
 
+    /// Checks that whatever was flown by pictures had its flow computed by this adapter, as another one's differs in its
+    /// roundings: so a row of the table is of one.
+    ///
+    /// # Errors
+    /// [`Error::Format`] naming the file and both adapters.
+    pub fn check_adapter(&self, path: impl AsRef<Path>, name: &str) -> Result<()> {
+        let flown = self.by_key.values().filter(|result| matches!(result.ended, Ended::Flown(_)));
+        match flown.filter_map(|result| result.adapter.as_deref()).find(|adapter| *adapter != name) {
+            Some(other) => {
+                let expected = format!("{name}, which this call computes on; or another folder");
+                Err(Error::format(path, "adapter of its flights", other, expected))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Adds all results of a file.
     ///
     /// # Errors
@@ -259,5 +275,22 @@ mod tests {
             let error = Results::read(&path).unwrap_err().to_string();
             assert!(error.contains(words) && !error.contains('\n'), "{error}");
         }
+    }
+
+    #[test]
+    fn flights_of_another_adapter_are_told_from_those_without_one_and_those_that_failed() {
+        let by = |mut result: JobResult, adapter: Option<&str>| {
+            result.adapter = adapter.map(str::to_owned);
+            result
+        };
+        let all = [
+            by(reached("wall", 1), None),
+            by(reached("wall", 2), Some("one")),
+            by(failed("wall", 3), Some("other")),
+        ];
+        let results = results(all);
+        assert!(results.check_adapter("a", "one").is_ok());
+        let error = results.check_adapter("a/results.jsonl", "other").unwrap_err().to_string();
+        assert!(["a/results.jsonl", "one", "other"].iter().all(|word| error.contains(word)), "{error}");
     }
 }
