@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Size, flo, picture};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size, flo, npy, picture};
 
 /// A folder of good and bad files.
 fn files() -> TempDir {
@@ -25,6 +25,9 @@ fn files() -> TempDir {
     let bytes = flo::encode(&flow).unwrap();
     fs::write(at("good.flo"), &bytes).unwrap();
     fs::write(at("cut.flo"), &bytes[..bytes.len() - 1]).unwrap();
+    let unknown = FlowField { size, data: vec![[f32::NAN; 2]; size.pixels()] };
+    npy::write(at("unknown.npy"), &unknown).unwrap();
+    npy::write_plane(at("dark.npy"), &Plane { size, data: vec![0.0; size.pixels()] }).unwrap();
     flo::write(at("small.flo"), &FlowField { size: Size::new(1, 1), data: vec![[0.0; 2]] }).unwrap();
     fs::write(at("text.png"), "hello").unwrap();
     fs::write(at("cut.y4m"), "YUV4MPEG2 W40 H33 Cmono\nFRAME\nabc").unwrap();
@@ -80,6 +83,9 @@ fn inputs() {
         (&["eval", "--truth", "good.flo", "cut.flo"], &["cut.flo", "10571 bytes", "10572 bytes"]),
         (&["eval", "--truth", "good.flo", "small.flo"], &["small.flo", "1×1", "40×33 as in good.flo"]),
         (&["eval", "--truth", "good.flo", "good.pfm"], &["good.pfm", ".pfm", ".flo"]),
+        (&["eval", "--truth", "good.flo", "unknown.npy"], &["unknown.npy", "no pixel is known", "good.flo"]),
+        (&["eval", "--truth", "unknown.npy", "good.flo", "--json"], &["no pixel is known", "unknown.npy"]),
+        (&["eval", "--truth", "good.flo", "good.flo", "--mask", "dark.npy"], &["no pixel inside dark.npy"]),
         (&["crosscheck", "a.png", "wide.png"], &["wide.png", "40×33 as in a.png"]),
         (&["crosscheck", "a.png"], &["2 values"]),
     ] {
