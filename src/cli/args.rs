@@ -1,5 +1,6 @@
 //! The flags that several subcommands share.
 
+use std::fmt::Display;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
@@ -11,6 +12,29 @@ use crate::flow::{Farneback, Outside, Update, Window};
 pub(super) fn whole<T: FromStr>(text: &str) -> Result<T> {
     let wrong = |_| Error::parameter("number", format_args!("{text:?}"), "a whole number from 0 on");
     text.trim().parse().map_err(wrong)
+}
+
+/// Reads a whole number from `low` to `high`, and says so of what is none.
+pub(super) fn whole_within<T>(low: T, high: T) -> impl Fn(&str) -> Result<T> + Clone + Send + Sync
+where
+    T: FromStr + PartialOrd + Display + Copy + Send + Sync,
+{
+    move |text| {
+        let number = text.trim().parse().ok().filter(|number| (low..=high).contains(number));
+        let expected = format_args!("a whole number from {low} to {high}");
+        number.ok_or_else(|| Error::parameter("number", format_args!("{text:?}"), expected))
+    }
+}
+
+/// An error about a parameter, as one about the flag that it was given by.
+pub(super) fn named_by_flags(error: Error, flags: &[(&'static str, &'static str)]) -> Error {
+    match error {
+        Error::Parameter { name, value, expected } => {
+            let flag = flags.iter().find(|(parameter, _)| *parameter == name);
+            Error::Parameter { name: flag.map_or(name, |(_, flag)| flag), value, expected }
+        }
+        error => error,
+    }
 }
 
 /// Parameters of the flow.

@@ -18,7 +18,7 @@ use self::measured::{MeasureArgs, PICTURE, Picture};
 use self::setup::SetupArgs;
 use self::timing::Costs;
 use self::video::Video;
-use super::args::whole;
+use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::{Outcome, input, print};
 use crate::engine::Backend;
@@ -27,7 +27,9 @@ use crate::frame::{Size, write_atomic, write_bytes};
 use crate::report::flight::{FlightReport, FlightVideo};
 use crate::sim::campaign::Faults;
 use crate::sim::course::file;
-use crate::sim::flight::{self, FRAME_S, Fault, Flight, FlightConfig, Record, Seen, Sensor, Summary};
+use crate::sim::flight::{
+    self, FRAME_S, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, Record, Seen, Sensor, Summary,
+};
 use crate::sim::{Course, CourseKind};
 use crate::steer::{Danger, Policy, SteerConfig};
 
@@ -86,18 +88,24 @@ pub(super) struct Fly {
     /// The same as --sensor flow
     #[arg(long, conflicts_with = "sensor")]
     truth_flow: bool,
-    /// Airspeed, m/s
+    /// Airspeed, m/s: the airframe flies level at 7.7 to 25, a turn at 0.1 to 1000
     #[arg(long, value_name = "M_S", allow_negative_numbers = true, default_value_t = 12.0)]
     speed: f64,
     /// Size of the pictures
     #[arg(long, value_name = "WxH", default_value = "320x240")]
     size: Size,
     /// Frames from an exposure until its command acts, at most 30
-    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true,
+        value_parser = whole_within(0, MAX_LATENCY_FRAMES)
+    )]
     latency_frames: u32,
-    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
-    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost. True depth shows gyro-lost alone, true
-    /// flow gyro-bias too, images all
+    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped[=SHARE] (of the
+    /// frames, 0.2 if not said), gyro-lost, gyro-bias[=DEG_S] (5 if not said), nan (in the frames' times) or device-lost. True
+    /// depth shows gyro-lost alone, true flow gyro-bias too, images all
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
     /// Folder to write into; it is made if it is not there
@@ -140,7 +148,9 @@ struct Recorder {
 impl Fly {
     pub(super) fn run(&self) -> Result<Outcome> {
         let config = self.config();
-        config.validate()?;
+        config
+            .validate()
+            .map_err(|error| named_by_flags(error, &[("speed_m_s", "--speed"), ("size", "--size")]))?;
         self.backend.check()?;
         let course = self.course()?;
         input::folder(&self.output)?;

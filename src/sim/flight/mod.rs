@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-pub use config::{Body, FlightConfig, FlowNoise, Sensor, camera};
+pub use config::{Body, FlightConfig, FlowNoise, MAX_LATENCY_FRAMES, Sensor, camera};
 pub use fault::{Fault, FaultKind};
 pub use measure::{Divergences, Measured};
 pub use record::{Cost, Outcome, Record, Summary};
