@@ -7,10 +7,10 @@ use crate::flow::{Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
-use crate::sim::SightConfig;
 use crate::sim::vehicle::{
     AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors, Wind,
 };
+use crate::sim::{Course, SightConfig};
 use crate::sphere::{Derotation, HeadingModel, Sphere};
 use crate::steer::SteerConfig;
 
@@ -175,6 +175,25 @@ pub fn camera(size: Size) -> Camera {
 }
 
 impl FlightConfig {
+    /// When a flight of this course is given up, seconds.
+    pub(super) fn longest_s(&self, course: &Course) -> f64 {
+        self.patience * course.length_m / self.speed_m_s
+    }
+
+    /// Checks that every fault begins before a flight of this course is given up.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first that does not.
+    pub(crate) fn check_faults_in(&self, course: &Course) -> Result<()> {
+        let longest_s = self.longest_s(course);
+        let Some(fault) = self.faults.iter().find(|fault| !(fault.from_s <= longest_s)) else {
+            return Ok(());
+        };
+        let found = format_args!("{fault} in {}", course.name);
+        let expected = format_args!("one that begins before the flight is given up, at {longest_s:.1} s");
+        Err(Error::parameter("fault", found, expected))
+    }
+
     /// Checks every parameter's range.
     ///
     /// # Errors
