@@ -328,6 +328,7 @@ fn what_is_measured_changes_nothing_of_the_flight() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["--backend", "cpu", "--size", "160x120", "--seed", "8", "--quiet"];
     let plain = fly(folder.path(), "plain", &args);
+    assert_eq!(plain.stderr, "", "it was to be quiet");
     let ended = fly(folder.path(), "measured", &[&args[..], &["--measure", "--picture-at", "1.5"]].concat());
     assert_eq!(plain.code, ended.code, "{}", ended.stderr);
     assert!(ended.stdout.contains("divergence at 1.50 s, full colour at ±2 /s"), "{}", ended.stdout);

@@ -76,6 +76,8 @@ fn between_the_lowest_and_the_highest_speed_it_flies_level_and_nowhere_else() {
     let message = params.trim(30.0).unwrap_err().to_string();
     let shown = format!("{} to {} m/s", (10.0 * low).ceil() / 10.0, (10.0 * high).floor() / 10.0);
     assert_eq!(message, format!("speed_m_s is 30, expected {shown} to fly level"));
+    // As the help of fly, campaign and simulate says.
+    assert_eq!(shown, "7.7 to 25 m/s");
 }
 
 /// The period of the phugoid: trimmed controls, and a start that is 2 % too fast.

@@ -1,5 +1,6 @@
 //! `viewsphere fly`: a flight through a made-up world on what the view says.
 
+mod cues;
 mod log;
 mod measured;
 pub(super) mod setup;
@@ -70,7 +71,10 @@ pub(super) struct Fly {
     /// Which one of its kind
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// The world from a file of JSON, made by hand or by --save-world
+    /// The world from a file of JSON, made by --save-world or by hand: docs/worlds.md has the format. A small one:
+    /// {"format": "viewsphere course", "version": 1, "name": "pole", "start_ned_m": [0, 0, -10], "length_m": 60,
+    /// "altitude_m": [2, 30], "surfaces": [{"kind": "ground"}, {"kind": "cylinder", "base_m": [40, 0, 0],
+    /// "top_m": [40, 0, -25], "radius_m": 0.5}]}
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "seed"])]
     world_file: Option<PathBuf>,
     /// Write the world of --world and --seed to a file for --world-file, then fly
@@ -155,7 +159,7 @@ impl Fly {
         let course = self.course()?;
         input::folder(&self.output)?;
         let backends = match config.sensor {
-            Sensor::Images => self.backend.open_pair()?,
+            Sensor::Images => self.backend.open_pair(self.quiet)?,
             _ => [Backend::Cpu, Backend::Cpu],
         };
         Faults(self.faults.clone()).check(&backends[1])?;
@@ -267,7 +271,7 @@ impl Fly {
                  clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
                  way        {:.1} m flown, {:.1} % of it towards the goal\n\
                  control    {:.1} °/s of roll (root mean square)\n\
-                 cues       {:.1} % of the frames without one\n\
+                 cues       {}\n\
                  speed      {}\n\
                  log        in {}{video}",
                 summary.outcome,
@@ -278,7 +282,7 @@ impl Fly {
                 summary.path_m,
                 100.0 * summary.efficiency(),
                 summary.roll_rate_rad_s.to_degrees(),
-                100.0 * summary.invalid,
+                cues::text(summary.invalid, records.iter().filter_map(|record| record.invalid.as_deref())),
                 timing.text(),
                 self.output.display(),
             ))?;

@@ -245,7 +245,7 @@ impl Simulate {
         bar: &ProgressBar,
     ) -> Result<()> {
         let config = SightConfig { noise_levels: self.noise, ..SightConfig::default() };
-        let mut sight = Sight::new(self.backend.open()?, camera, &course.world, &config)
+        let mut sight = Sight::new(self.backend.open_unless(self.quiet)?, camera, &course.world, &config)
             .map_err(|error| named_by_flags(error, &[("noise_levels", "--noise")]))?;
         camera::write(folder.path("camera.yaml"), camera, Format::OpenCv)?;
         folder.make("frames")?;

@@ -47,7 +47,7 @@ impl AirframeParams {
         let levels = |speed_m_s: f64| self.level(speed_m_s).is_some();
         let mut speeds = (0..=925).map(|n| 0.1 * RATIO.powi(n)).filter(|speed_m_s| levels(*speed_m_s));
         let first = speeds.next()?;
-        let last = speeds.last().unwrap_or(first);
+        let last = speeds.next_back().unwrap_or(first);
         let edge = |mut inside: f64, mut outside: f64| {
             for _ in 0..40 {
                 let middle = (inside + outside) / 2.0;
