@@ -68,6 +68,7 @@ fn inputs() {
     for (args, words) in [
         (&["flow", "a.png", "no-such.png", "-o", "o.flo"][..], &["no-such.png"][..]),
         (&["flow", "a.png", "-o", "o"], &["a.png", "number of frames is 1, expected at least 2"]),
+        (&["flow", "."], &["input is a folder, expected files, such as './*.png' or './%04d.png'"]),
         (&["flow", "a.png", "text.png", "-o", "o.flo"], &["text.png", "expected a PNG"]),
         (&["flow", "a.png", "wide.png", "-o", "o.flo"], &["wide.png", "41×33", "40×33 as in a.png"]),
         (&["flow", "a.png", "rgb.png", "-o", "o.flo"], &["rgb.png", "rgb8", "gray8 as in a.png"]),
@@ -161,5 +162,13 @@ fn parameters() {
     refused(&folder, &["bench", "--frames", "1"], &["--frames is 1", "2 to 100000"]);
     refused(&folder, &["demo", "--adapter", "no such adapter"], &["no usable GPU adapter"]);
     refused(&folder, &["swim"], &["swim"]);
+    refused(&folder, &["run", "a.png"], &["--camera <FILE>", "--fov-deg <DEGREES>"]);
+    for command in
+        [&["fly"][..], &["campaign", "--sensors", "depth"], &["simulate", "--seconds", "1"], &["demo"]]
+    {
+        refused(&folder, &[command, &["-o", "-"]].concat(), &["-o is -, expected a folder"]);
+    }
+    let late = ["fly", "--sensor", "depth", "--fault", "gyro-lost:1000"];
+    refused(&folder, &late, &["gyro-lost:1000 in forest", "before the flight is given up, at "]);
     refused(&folder, &[], &["--help"]);
 }
