@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Size, flo, picture};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size, flo, npy, picture};
 
 /// A folder of good and bad files.
 fn files() -> TempDir {
@@ -25,6 +25,9 @@ fn files() -> TempDir {
     let bytes = flo::encode(&flow).unwrap();
     fs::write(at("good.flo"), &bytes).unwrap();
     fs::write(at("cut.flo"), &bytes[..bytes.len() - 1]).unwrap();
+    let unknown = FlowField { size, data: vec![[f32::NAN; 2]; size.pixels()] };
+    npy::write(at("unknown.npy"), &unknown).unwrap();
+    npy::write_plane(at("dark.npy"), &Plane { size, data: vec![0.0; size.pixels()] }).unwrap();
     flo::write(at("small.flo"), &FlowField { size: Size::new(1, 1), data: vec![[0.0; 2]] }).unwrap();
     fs::write(at("text.png"), "hello").unwrap();
     fs::write(at("cut.y4m"), "YUV4MPEG2 W40 H33 Cmono\nFRAME\nabc").unwrap();
@@ -65,6 +68,7 @@ fn inputs() {
     for (args, words) in [
         (&["flow", "a.png", "no-such.png", "-o", "o.flo"][..], &["no-such.png"][..]),
         (&["flow", "a.png", "-o", "o"], &["a.png", "number of frames is 1, expected at least 2"]),
+        (&["flow", "."], &["input is a folder, expected files, such as './*.png' or './%04d.png'"]),
         (&["flow", "a.png", "text.png", "-o", "o.flo"], &["text.png", "expected a PNG"]),
         (&["flow", "a.png", "wide.png", "-o", "o.flo"], &["wide.png", "41×33", "40×33 as in a.png"]),
         (&["flow", "a.png", "rgb.png", "-o", "o.flo"], &["rgb.png", "rgb8", "gray8 as in a.png"]),
@@ -80,6 +84,9 @@ fn inputs() {
         (&["eval", "--truth", "good.flo", "cut.flo"], &["cut.flo", "10571 bytes", "10572 bytes"]),
         (&["eval", "--truth", "good.flo", "small.flo"], &["small.flo", "1×1", "40×33 as in good.flo"]),
         (&["eval", "--truth", "good.flo", "good.pfm"], &["good.pfm", ".pfm", ".flo"]),
+        (&["eval", "--truth", "good.flo", "unknown.npy"], &["unknown.npy", "no pixel is known", "good.flo"]),
+        (&["eval", "--truth", "unknown.npy", "good.flo", "--json"], &["no pixel is known", "unknown.npy"]),
+        (&["eval", "--truth", "good.flo", "good.flo", "--mask", "dark.npy"], &["no pixel inside dark.npy"]),
         (&["crosscheck", "a.png", "wide.png"], &["wide.png", "40×33 as in a.png"]),
         (&["crosscheck", "a.png"], &["2 values"]),
     ] {
@@ -156,5 +163,13 @@ fn parameters() {
     refused(&folder, &["bench", "--frames", "1"], &["--frames is 1", "2 to 100000"]);
     refused(&folder, &["demo", "--adapter", "no such adapter"], &["no usable GPU adapter"]);
     refused(&folder, &["swim"], &["swim"]);
+    refused(&folder, &["run", "a.png"], &["--camera <FILE>", "--fov-deg <DEGREES>"]);
+    for command in
+        [&["fly"][..], &["campaign", "--sensors", "depth"], &["simulate", "--seconds", "1"], &["demo"]]
+    {
+        refused(&folder, &[command, &["-o", "-"]].concat(), &["-o is -, expected a folder"]);
+    }
+    let late = ["fly", "--sensor", "depth", "--fault", "gyro-lost:1000"];
+    refused(&folder, &late, &["gyro-lost:1000 in forest", "before the flight is given up, at "]);
     refused(&folder, &[], &["--help"]);
 }

@@ -320,6 +320,7 @@ fn what_is_measured_changes_nothing_of_the_flight() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["--backend", "cpu", "--size", "160x120", "--seed", "8", "--quiet"];
     let plain = fly(folder.path(), "plain", &args);
+    assert_eq!(plain.stderr, "", "it was to be quiet");
     let ended = fly(folder.path(), "measured", &[&args[..], &["--measure", "--picture-at", "1.5"]].concat());
     assert_eq!(plain.code, ended.code, "{}", ended.stderr);
     assert!(ended.stdout.contains("divergence at 1.50 s, full colour at ±2 /s"), "{}", ended.stdout);
@@ -347,13 +348,14 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     };
     refused(&["fly", "--world", "moon"], &["moon", "wall"]);
     refused(&["fly", "--world", "wall:width=x"], &["wall", "width"]);
-    fly(&["--speed", "0"], &["speed_m_s", "0"]);
-    fly(&["--speed", "-3"], &["speed_m_s", "-3"]);
+    fly(&["--speed", "0"], &["--speed is 0, expected 7.", "m/s"]);
+    fly(&["--speed", "-3"], &["--speed is -3, expected 7.", "m/s"]);
+    fly(&["--speed", "-3", "--body", "turn"], &["--speed is -3, expected 0.1 to 1000 m/s"]);
     fly(&["--policy", "bee"], &["bee", "balance"]);
     fly(&["--danger", "wolf"], &["wolf", "nearness"]);
     fly(&["--sensor", "radar"], &["radar", "depth"]);
     fly(&["--size", "320"], &["320", "WIDTHxHEIGHT"]);
-    fly(&["--latency-frames", "31"], &["latency_frames", "31"]);
+    fly(&["--latency-frames", "31"], &["--latency-frames", "\"31\"", "a whole number from 0 to 30"]);
     fly(&["--fault", "fire"], &["fire", "frozen"]);
     fly(&["--fault", "black:3..2"], &["fault", "3 to 2"]);
     fly(&["--fault", "black", "--sensor", "depth"], &["black:0 with the sensor depth"]);
@@ -362,7 +364,9 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     for wind in ["1,2,inf", "nan,0,0", "1e9,0,0", "0,-101,0", "1e300,0,0"] {
         fly(&["--wind", wind], &["wind", wind, "within ±100 m/s"]);
     }
-    fly(&["--speed", "500"], &["speed_m_s is 500", "level"]);
+    fly(&["--speed", "500"], &["--speed is 500, expected 7.", "level"]);
+    fly(&["--size", "1x1"], &["--size is 1×1, expected at least 2×2"]);
+    fly(&["--size", "16384x2"], &["16384×2", "rectangle"]);
     fly(&["--fault", "gyro-bias=5", "--sensor", "depth"], &["gyro-bias=5:0 with the sensor depth"]);
     fly(&["--fault", "gyro-bias=1e300"], &["bias of the gyro", "2005"]);
     fly(&["--truth-flow", "--sensor", "depth"], &["--truth-flow"]);
@@ -377,7 +381,7 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     refused(&["fly", "--world", "forest:radius=1:radius=2"], &["radius=2", "each parameter once"]);
     fly(&["--seed", "-1"], &["--seed", "\"-1\"", "a whole number from 0 on", "see viewsphere fly --help"]);
     fly(&["--seed", "1.5"], &["--seed", "a whole number from 0 on"]);
-    fly(&["--latency-frames", "-1"], &["--latency-frames", "-1"]);
+    fly(&["--latency-frames", "-1"], &["--latency-frames", "\"-1\"", "a whole number from 0 to 30"]);
     fly(&["--measure", "--picture-at", "-1"], &["--picture-at is -1"]);
     fly(&["--size", "-1x2"], &["'-1'", "no negative number is expected there; see viewsphere fly"]);
     fly(&["-o", "/proc/x/y", "--sensor", "depth"], &["/proc/x/y: "]);

@@ -62,8 +62,12 @@ impl Camera {
         };
         let ((f_u, u_0), (f_v, v_0)) = (fit(x, size.width), fit(y, size.height));
         if !(f_u > 0.0 && f_v > 0.0 && f_u.is_finite() && f_v.is_finite()) {
-            let expected = "one with a rectangle inside that is wholly shown";
-            return Err(Error::parameter("view of the camera", format_args!("{x:?} × {y:?}"), expected));
+            let [across, down] = [x[1] - x[0], y[1] - y[0]];
+            let found = format_args!(
+                "{} with a lens that leaves a rectangle of {across:.3} × {down:.3} focal lengths of it",
+                self.size
+            );
+            return Err(Error::parameter("size", found, "one with both above 0"));
         }
         Ok(Self { size, f_u, f_v, u_0, v_0, lens: Lens::NONE })
     }
@@ -82,7 +86,7 @@ impl Camera {
         let row = |v: u32| (0..width).map(|u| place(u, v)).collect::<Result<Vec<_>>>();
         // Between the centres of a single column there is nothing that could be shown.
         if width < 2 || height < 2 {
-            return Err(Error::parameter("size", self.size, "at least 2×2 for another view"));
+            return Err(Error::parameter("size", self.size, "at least 2×2, for a view without the lens"));
         }
         Ok(Border { left: column(0)?, right: column(width - 1)?, top: row(0)?, bottom: row(height - 1)? })
     }

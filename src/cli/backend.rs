@@ -11,8 +11,8 @@ use crate::gpu::{Gpu, GpuOptions};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Backend")]
 pub(super) struct BackendArgs {
-    /// What to compute on. Without it: a real GPU if there is one, else the CPU; which one is said on stderr. `gpu`
-    /// takes any adapter, also one that computes on the CPU such as lavapipe
+    /// What to compute on. Without it: a real GPU if there is one, else the CPU; which one is said on stderr, but for
+    /// --quiet. `gpu` takes any adapter, also one that computes on the CPU such as lavapipe
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendArg>,
     /// Part of the name of the GPU adapter to use (see `viewsphere devices`)
@@ -32,18 +32,23 @@ pub(super) enum BackendArg {
 impl BackendArgs {
     /// What to compute on. Says on stderr which it is.
     pub(super) fn open(&self) -> Result<Backend> {
-        self.open_with(&GpuOptions::default())
+        self.open_unless(false)
+    }
+
+    /// The same, and says nothing if `quiet`.
+    pub(super) fn open_unless(&self, quiet: bool) -> Result<Backend> {
+        self.open_with(&GpuOptions::default(), quiet)
     }
 
     /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
     /// counts for more than speed.
     pub(super) fn open_for_shaders(&self) -> Result<Backend> {
-        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() })
+        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() }, false)
     }
 
     /// Two of the same kind, on devices of their own: what happens to one does not happen to the other.
-    pub(super) fn open_pair(&self) -> Result<[Backend; 2]> {
-        let first = self.open()?;
+    pub(super) fn open_pair(&self, quiet: bool) -> Result<[Backend; 2]> {
+        let first = self.open_unless(quiet)?;
         let second = self.open_like(&first)?;
         Ok([first, second])
     }
@@ -57,12 +62,17 @@ impl BackendArgs {
         }
     }
 
-    fn open_with(&self, default: &GpuOptions) -> Result<Backend> {
+    fn open_with(&self, default: &GpuOptions, quiet: bool) -> Result<Backend> {
+        let say = |text: std::fmt::Arguments<'_>| {
+            if !quiet {
+                print::note(text);
+            }
+        };
         let backend = match (self.backend, &self.adapter) {
             (None, None) => match Gpu::new(default) {
                 Ok(gpu) => Backend::Gpu(gpu),
                 Err(Error::NoAdapter { reason }) => {
-                    print::note(format_args!("computing on the CPU; no usable GPU adapter: {reason}"));
+                    say(format_args!("computing on the CPU; no usable GPU adapter: {reason}"));
                     return Ok(Backend::Cpu);
                 }
                 Err(error) => return Err(error),
@@ -70,8 +80,8 @@ impl BackendArgs {
             _ => self.named()?,
         };
         match &backend {
-            Backend::Gpu(gpu) => print::note(format_args!("computing on {}", gpu.adapter())),
-            Backend::Cpu => print::note("computing on the CPU"),
+            Backend::Gpu(gpu) => say(format_args!("computing on {}", gpu.adapter())),
+            Backend::Cpu => say(format_args!("computing on the CPU")),
         }
         Ok(backend)
     }

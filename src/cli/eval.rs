@@ -6,14 +6,15 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{Outcome, input, print};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::eval::{FlowError, flow_error};
 use crate::frame::read_flow;
 
 /// Compare a flow field with the truth.
 ///
 /// Formats are told by the extension: .flo (Middlebury), .png (KITTI), .npy (float32, height × width × 2). Pixels that
-/// are unknown in the truth are left out; those unknown in the estimate lower the density.
+/// are unknown in the truth are left out; those unknown in the estimate lower the density. Without any to compare it is an
+/// error.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -70,6 +71,12 @@ impl Eval {
         input::same_size(&self.estimate, estimate.size, truth.size, &self.truth)?;
         let mask = self.mask.as_ref().map(|path| input::plane(path, truth.size, &self.truth)).transpose()?;
         let error = flow_error(&truth, &estimate, mask.as_ref())?;
+        if error.pixels == 0 {
+            let inside =
+                self.mask.as_ref().map_or(String::new(), |mask| format!(" inside {}", mask.display()));
+            let found = format!("0: no pixel{inside} is known both there and in {}", self.truth.display());
+            return Err(Error::format(&self.estimate, "number of pixels compared", found, "at least 1"));
+        }
         if self.json {
             print::json(&Figures::from(error))?;
         } else {

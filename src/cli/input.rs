@@ -17,6 +17,9 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
 /// Checks that a folder can be written into, or can be made, and leaves nothing behind. An error names the folder that was
 /// given, be it one above it that is at fault.
 pub(super) fn folder(path: &Path) -> Result<()> {
+    if path == Path::new("-") {
+        return Err(Error::parameter("-o", "-", "a folder, not standard output; ./- is one of that name"));
+    }
     let there = path.ancestors().find(|folder| folder.exists());
     // An ancestor of no name is the working folder.
     let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -24,7 +24,7 @@ mod undistort;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::error::Result;
 use crate::frame::discard_and_exit;
@@ -48,9 +48,7 @@ Examples:
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
   viewsphere fly --world forest --seed 7             through a made-up world on what the view says
   viewsphere campaign --worlds wall,city --seeds 0..100    how often that goes well
-  viewsphere devices                                 what there is to compute on
-
-Exit codes: 0 done, 1 a check failed, 2 anything else; then one line on standard error says what; 130 stopped by a signal."
+  viewsphere devices                                 what there is to compute on"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -84,7 +82,8 @@ pub fn main() -> ExitCode {
     environment::prepare();
     // Without a handler the program is stopped all the same; what it leaves goes with the next file of the same name.
     let _ = ctrlc::set_handler(|| discard_and_exit(INTERRUPTED));
-    let cli = match Cli::try_parse() {
+    let parsed = command().try_get_matches().and_then(|given| Cli::from_arg_matches(&given));
+    let cli = match parsed {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
@@ -114,6 +113,22 @@ impl Command {
             Self::Demo(command) => command.run(),
         }
     }
+}
+
+/// The exit codes of a command that does not say more about them.
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 a check failed, 2 anything else, and one line on standard error says what; 130 stopped by a signal.";
+
+/// The program's arguments, and in each command's help its exit codes.
+fn command() -> clap::Command {
+    let told = |command: clap::Command| {
+        let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        if help.contains("Exit codes:") {
+            command
+        } else {
+            command.after_help(format!("{help}\n\n{EXIT_CODES}"))
+        }
+    };
+    told(Cli::command()).mut_subcommands(move |command| told(command).mut_subcommands(told))
 }
 
 /// Help that was asked for, or what is wrong with the arguments, on one line.
@@ -153,7 +168,7 @@ fn negative(problem: &str) -> Option<String> {
 
 /// The command whose help tells of the process's arguments, such as `viewsphere campaign merge`.
 fn asked() -> String {
-    let (mut command, mut name) = (Cli::command(), "viewsphere".to_owned());
+    let (mut command, mut name) = (command(), "viewsphere".to_owned());
     for argument in std::env::args_os().skip(1) {
         let Some(found) = argument.to_str().and_then(|argument| command.find_subcommand(argument)) else {
             break;
@@ -162,4 +177,21 @@ fn asked() -> String {
         command = found.clone();
     }
     name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_of_every_command_tells_its_exit_codes_once() {
+        fn check(command: &clap::Command) {
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert_eq!(help.matches("Exit codes: 0 ").count(), 1, "{}: {help}", command.get_name());
+            command.get_subcommands().for_each(check);
+        }
+        let command = command();
+        check(&command);
+        command.debug_assert();
+    }
 }

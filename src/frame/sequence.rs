@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// The files that an argument stands for.
 ///
-/// A name that exists is itself. Otherwise, in the file name but not in its folder:
+/// A file that exists is itself. Otherwise, in the file name but not in its folder:
 /// - `%d`, `%4d` or `%04d` stands for a number as `printf` writes it (`%%` is a percent sign). The sequence begins at
 ///   the lowest number in the folder and ends at the first gap.
 /// - `*` stands for any text and `?` for one character. All matching files are taken, in the order of [`natural`];
@@ -19,11 +19,16 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// [`Error::Io`] naming the folder if it cannot be listed; [`Error::Format`] naming the pattern if nothing matches or
-/// if it is not one of the above.
+/// if it is not one of the above, or a folder.
 pub fn expand(argument: &str) -> Result<Vec<PathBuf>> {
     let path = Path::new(argument);
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let globbed = name.contains(['*', '?']);
+    if path.is_dir() {
+        let [all, numbered] = ["*.png", "%04d.png"].map(|pattern| path.join(pattern));
+        let expected = format_args!("files, such as '{}' or '{}'", all.display(), numbered.display());
+        return Err(Error::format(path, "input", "a folder", expected));
+    }
     if path.exists() || !(globbed || name.contains('%')) {
         return Ok(vec![path.to_owned()]);
     }

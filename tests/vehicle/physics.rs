@@ -50,13 +50,34 @@ fn in_trim_lift_is_weight_and_thrust_is_drag() {
 fn there_is_no_trim_below_the_stall_or_without_thrust() {
     let params = AirframeParams::default();
     let message = params.trim(0.95 * params.stall_speed_m_s(0.0)).unwrap_err().to_string();
-    assert!(message.starts_with("speed_m_s") && message.contains("stall at 7.7"), "{message}");
+    assert!(message.starts_with("speed_m_s is 7.") && message.ends_with(" m/s to fly level"), "{message}");
     assert!(params.trim(1.01 * params.stall_speed_m_s(0.0)).is_ok());
     for wrong in [0.0, -3.0, f64::NAN, f64::INFINITY] {
         assert!(params.trim(wrong).is_err());
     }
-    let message = AirframeParams { thrust_limit_n: 1.0, ..params }.trim(12.0).unwrap_err().to_string();
-    assert!(message.starts_with("speed_m_s is 12, which takes ") && message.contains("and 1 N"), "{message}");
+    let weak = AirframeParams { thrust_limit_n: 1.0, ..params };
+    assert_eq!(weak.level_speeds_m_s(), None);
+    let message = weak.trim(12.0).unwrap_err().to_string();
+    assert!(message.starts_with("speed_m_s is 12, expected another airframe"), "{message}");
+}
+
+#[test]
+fn between_the_lowest_and_the_highest_speed_it_flies_level_and_nowhere_else() {
+    let params = AirframeParams::default();
+    let [low, high] = params.level_speeds_m_s().unwrap();
+    assert!(low > 0.9 * params.stall_speed_m_s(0.0) && high > 20.0, "{low} {high}");
+    for part in 0..=100 {
+        let speed_m_s = low + f64::from(part) / 100.0 * (high - low);
+        assert!(params.trim(speed_m_s).is_ok(), "{speed_m_s}");
+    }
+    for speed_m_s in [0.1, 0.999 * low, 1.001 * high, 1000.0] {
+        assert!(params.trim(speed_m_s).is_err(), "{speed_m_s}");
+    }
+    let message = params.trim(30.0).unwrap_err().to_string();
+    let shown = format!("{} to {} m/s", (10.0 * low).ceil() / 10.0, (10.0 * high).floor() / 10.0);
+    assert_eq!(message, format!("speed_m_s is 30, expected {shown} to fly level"));
+    // As the help of fly, campaign and simulate says.
+    assert_eq!(shown, "7.7 to 25 m/s");
 }
 
 /// The period of the phugoid: trimmed controls, and a start that is 2 % too fast.

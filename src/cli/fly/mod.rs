@@ -1,5 +1,6 @@
 //! `viewsphere fly`: a flight through a made-up world on what the view says.
 
+mod cues;
 mod log;
 mod measured;
 pub(super) mod setup;
@@ -18,7 +19,7 @@ use self::measured::{MeasureArgs, PICTURE, Picture};
 use self::setup::SetupArgs;
 use self::timing::Costs;
 use self::video::Video;
-use super::args::whole;
+use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::{Outcome, input, print};
 use crate::engine::Backend;
@@ -27,7 +28,9 @@ use crate::frame::{Size, remove, write_atomic, write_bytes};
 use crate::report::flight::{FlightReport, FlightVideo};
 use crate::sim::campaign::Faults;
 use crate::sim::course::file;
-use crate::sim::flight::{self, FRAME_S, Fault, Flight, FlightConfig, Record, Seen, Sensor, Summary};
+use crate::sim::flight::{
+    self, FRAME_S, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, Record, Seen, Sensor, Summary,
+};
 use crate::sim::{Course, CourseKind};
 use crate::steer::{Danger, Policy, SteerConfig};
 
@@ -68,7 +71,10 @@ pub(super) struct Fly {
     /// Which one of its kind
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// The world from a file of JSON, made by hand or by --save-world
+    /// The world from a file of JSON, made by --save-world or by hand: docs/worlds.md has the format. A small one:
+    /// {"format": "viewsphere course", "version": 1, "name": "pole", "start_ned_m": [0, 0, -10], "length_m": 60,
+    /// "altitude_m": [2, 30], "surfaces": [{"kind": "ground"}, {"kind": "cylinder", "base_m": [40, 0, 0],
+    /// "top_m": [40, 0, -25], "radius_m": 0.5}]}
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "seed"])]
     world_file: Option<PathBuf>,
     /// Write the world of --world and --seed to a file for --world-file, then fly
@@ -86,18 +92,24 @@ pub(super) struct Fly {
     /// The same as --sensor flow
     #[arg(long, conflicts_with = "sensor")]
     truth_flow: bool,
-    /// Airspeed, m/s
+    /// Airspeed, m/s: the airframe flies level at 7.7 to 25, a turn at 0.1 to 1000
     #[arg(long, value_name = "M_S", allow_negative_numbers = true, default_value_t = 12.0)]
     speed: f64,
     /// Size of the pictures
     #[arg(long, value_name = "WxH", default_value = "320x240")]
     size: Size,
     /// Frames from an exposure until its command acts, at most 30
-    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true,
+        value_parser = whole_within(0, MAX_LATENCY_FRAMES)
+    )]
     latency_frames: u32,
-    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped=SHARE (of the
-    /// frames), gyro-lost, gyro-bias=DEG_S, nan (in the frames' times) or device-lost (once, without UNTIL). True depth shows gyro-lost alone, true
-    /// flow gyro-bias too, images all
+    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped[=SHARE] (of the
+    /// frames, 0.2 if not said), gyro-lost, gyro-bias[=DEG_S] (5 if not said), nan (in the frames' times) or device-lost
+    /// (once, without UNTIL). True depth shows gyro-lost alone, true flow gyro-bias too, images all
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
     /// Folder to write into; it is made if it is not there. Files of an earlier flight are replaced, others of these names not
@@ -140,13 +152,15 @@ struct Recorder {
 impl Fly {
     pub(super) fn run(&self) -> Result<Outcome> {
         let config = self.config();
-        config.validate()?;
+        config
+            .validate()
+            .map_err(|error| named_by_flags(error, &[("speed_m_s", "--speed"), ("size", "--size")]))?;
         self.backend.check()?;
         let course = self.course()?;
         input::folder(&self.output)?;
         self.spare()?;
         let backends = match config.sensor {
-            Sensor::Images => self.backend.open_pair()?,
+            Sensor::Images => self.backend.open_pair(self.quiet)?,
             _ => [Backend::Cpu, Backend::Cpu],
         };
         Faults(self.faults.clone()).check(&backends[1])?;
@@ -260,7 +274,7 @@ impl Fly {
             write_bytes(self.output.join(name), text.as_bytes())?;
         }
         // That of an earlier flight would be taken for this one's.
-        remove(&self.output.join(PICTURE))?;
+        remove(self.output.join(PICTURE))?;
         let picture = recorder.picture.as_ref().map(|picture| picture.write(&self.output)).transpose()?;
         if self.json {
             print::json(&end)?;
@@ -273,7 +287,7 @@ impl Fly {
                  clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
                  way        {:.1} m flown, {:.1} % of it towards the goal\n\
                  control    {:.1} °/s of roll (root mean square)\n\
-                 cues       {:.1} % of the frames without one\n\
+                 cues       {}\n\
                  speed      {}\n\
                  log        in {}{video}",
                 summary.outcome,
@@ -284,7 +298,7 @@ impl Fly {
                 summary.path_m,
                 100.0 * summary.efficiency(),
                 summary.roll_rate_rad_s.to_degrees(),
-                100.0 * summary.invalid,
+                cues::text(summary.invalid, records.iter().filter_map(|record| record.invalid.as_deref())),
                 timing.text(),
                 self.output.display(),
             ))?;

@@ -22,7 +22,8 @@ pub(in crate::cli) struct SetupArgs {
     /// Gusts on top of it
     #[arg(long, value_enum, default_value_t = GustsArg::None)]
     gusts: GustsArg,
-    /// Take the direction of motion from vanes, in place of the view
+    /// Take the direction of motion from vanes, in place of the view. They tell it through the air and not over the ground,
+    /// so that a flight in wind, which carries it aside, steers worse by them
     #[arg(long)]
     vanes: bool,
 }

@@ -11,7 +11,7 @@ mod video;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use self::gyro::{Feed, GyroArgs, Numbers};
 use self::horizon::Horizon;
@@ -47,6 +47,7 @@ use crate::sphere::{Alarm, Sphere};
 /// from top to bottom, and in lists row by row ttc_s, null where nothing is known or comes nearer, and coverage 0 to 1),
 /// timing (age_ms since the frame was there, latency_ms since it was submitted, dropped in all).
 #[derive(Args, Debug)]
+#[command(group(ArgGroup::new("view").args(["camera", "fov_deg"]).required(true)))]
 #[command(after_help = "\
 Examples:
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv
@@ -62,7 +63,7 @@ pub(super) struct Run {
     #[arg(required = true)]
     inputs: Vec<String>,
     /// The camera that took the frames
-    #[arg(long, value_name = "FILE", required_unless_present = "fov_deg", conflicts_with = "fov_deg")]
+    #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
     /// In place of a camera file: a pinhole without a lens that sees this far from the left border to the right one
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
@@ -179,7 +180,7 @@ impl Run {
         config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
         // What the mask hides must not be seen in the flow beside it.
         config.engine.flow.certainty = config.mask.is_some();
-        let pipeline = Pipeline::new(self.backend.open()?, &camera, &config)?;
+        let pipeline = Pipeline::new(self.backend.open_unless(self.quiet)?, &camera, &config)?;
         // What it took to get ready is not the frame's age.
         first.there = Instant::now();
         let (ideal, rate) = (*pipeline.ideal(), reader.rate().fraction());

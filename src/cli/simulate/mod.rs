@@ -14,7 +14,7 @@ use serde::Serialize;
 use self::flown::Flown;
 use self::folder::Folder;
 use self::truth::{Truth, Writer};
-use super::args::whole;
+use super::args::{named_by_flags, whole};
 use super::backend::BackendArgs;
 use super::{Outcome, print};
 use crate::camera::{self, Camera, Format};
@@ -23,7 +23,7 @@ use crate::frame::{Size, picture};
 use crate::imu::write_log;
 use crate::report::counted;
 use crate::sim::flight::camera;
-use crate::sim::vehicle::GyroErrors;
+use crate::sim::vehicle::{GyroErrors, MAX_BIAS_RAD_S};
 use crate::sim::{Course, CourseKind, Random};
 use crate::sim::{Sight, SightConfig};
 
@@ -61,10 +61,10 @@ pub(super) struct Simulate {
     /// What the world and all that is random begin with
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// How long the flight is, above 0 and at most 600; it ends earlier at the goal
+    /// How long the flight is, two frames at least and at most 600; it ends earlier at the goal
     #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Airspeed in m/s, 0.1 to 1000
+    /// Airspeed, m/s: the airframe flies level at 7.7 to 25
     #[arg(long, value_name = "M_S", default_value_t = 12.0, allow_negative_numbers = true)]
     speed: f64,
     /// Size of the pictures
@@ -139,13 +139,14 @@ impl Simulate {
         };
         let course = self.world.course(self.seed)?;
         let errors = self.gyro_errors();
-        errors.validate()?;
-        let most = (self.seconds * f64::from(self.fps)).round().max(1.0) as usize;
+        errors.validate().map_err(|error| named_by_flags(error, &[("noise_rad_s_rthz", "--gyro-noise")]))?;
+        let most = self.most()?;
         self.warn(most, camera.size);
         let pictures = self.pictures.then_some(self.speed);
         let writer = Writer::new(&course.world, &camera, &self.truth, self.grid(), pictures)?;
         let mut folder = Folder::new(&self.output, self.force)?;
-        let flown = Flown::new(&course, self.speed, steps, most)?;
+        let flown = Flown::new(&course, self.speed, steps, most)
+            .map_err(|error| named_by_flags(error, &[("speed_m_s", "--speed")]))?;
         let bar = if self.quiet { ProgressBar::hidden() } else { progress(flown.frames.len()) };
         let written = self.write(&folder, &course, &camera, writer, &flown, &bar);
         bar.finish_and_clear();
@@ -165,8 +166,9 @@ impl Simulate {
         if !(self.seconds > 0.0 && self.seconds <= 600.0) {
             return Err(Error::parameter("--seconds", self.seconds, "above 0 and at most 600"));
         }
-        if !(0.1..=1e3).contains(&self.speed) {
-            return Err(Error::parameter("--speed", self.speed, "0.1 to 1000"));
+        if !(self.gyro_bias.to_radians().abs() <= MAX_BIAS_RAD_S) {
+            let expected = format!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees());
+            return Err(Error::parameter("--gyro-bias", format_args!("{} °/s", self.gyro_bias), expected));
         }
         if self.fps == 0 || !STEPS_PER_S.is_multiple_of(self.fps) {
             let expected = format!("a divisor of {STEPS_PER_S}");
@@ -180,6 +182,17 @@ impl Simulate {
             return Err(Error::parameter("--grid", found, "none without grid in --truth"));
         }
         Ok((STEPS_PER_S / self.fps) as usize)
+    }
+
+    /// Frames until the time is over. Between fewer than two nothing moves.
+    fn most(&self) -> Result<usize> {
+        let frames = (self.seconds * f64::from(self.fps)).round();
+        if !(frames >= 2.0) {
+            let found = format_args!("{}, {frames} frames at --fps {}", self.seconds, self.fps);
+            let least = format_args!("2 frames and more, from {:.3} s on", 1.5 / f64::from(self.fps));
+            return Err(Error::parameter("--seconds", found, least));
+        }
+        Ok(frames as usize)
     }
 
     fn grid(&self) -> Size {
@@ -232,7 +245,8 @@ impl Simulate {
         bar: &ProgressBar,
     ) -> Result<()> {
         let config = SightConfig { noise_levels: self.noise, ..SightConfig::default() };
-        let mut sight = Sight::new(self.backend.open()?, camera, &course.world, &config)?;
+        let mut sight = Sight::new(self.backend.open_unless(self.quiet)?, camera, &course.world, &config)
+            .map_err(|error| named_by_flags(error, &[("noise_levels", "--noise")]))?;
         camera::write(folder.path("camera.yaml"), camera, Format::OpenCv)?;
         folder.make("frames")?;
         self.truth.iter().try_for_each(|truth| folder.make(truth.folder()))?;

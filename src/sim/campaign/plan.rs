@@ -97,11 +97,13 @@ impl Campaign {
         if !(1..=MAX_JOBS).contains(&jobs) {
             return Err(Error::parameter("number of flights", jobs, format_args!("1 to {MAX_JOBS}")));
         }
-        for world in &self.worlds {
-            world.course(self.seeds.start)?;
-        }
+        let first = self.worlds.iter().map(|world| Ok((world, world.course(self.seeds.start)?)));
+        let courses = first.collect::<Result<Vec<_>>>()?;
         for setting in &settings {
-            setting.config(&self.base).validate()?;
+            let config = setting.config(&self.base);
+            config.validate()?;
+            let course = courses.iter().find(|(world, _)| **world == setting.world);
+            course.map_or(Ok(()), |(_, course)| config.check_faults_in(course))?;
             setting.faults.check(flow)?;
         }
         Ok(())
@@ -224,5 +226,7 @@ mod tests {
         refused(|campaign| campaign.speeds_m_s.push(f64::NAN), "speed_m_s");
         refused(|campaign| campaign.latencies_frames.push(31), "latency_frames");
         refused(|campaign| campaign.faults.push("black".parse().unwrap()), "black:0 with the sensor depth");
+        let late = |campaign: &mut Campaign| campaign.faults.push("gyro-lost:1000".parse().unwrap());
+        refused(late, "gyro-lost:1000 in wall, expected one that begins before the flight is given up, at ");
     }
 }

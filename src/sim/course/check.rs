@@ -8,7 +8,8 @@ use crate::sim::Form;
 const MAX_NAME: usize = 200;
 
 impl Course {
-    /// Checks that the course can be flown: that its numbers are finite and in order, and that there is room at the start.
+    /// Checks that the course can be flown: that its numbers are finite and in order, and that there is room at the
+    /// start, which lies within the band of altitudes.
     ///
     /// # Errors
     /// [`Error::Parameter`] naming the field.
@@ -54,6 +55,12 @@ impl Course {
         if !(clearance_m > 0.0 && self.start_ned_m.abs().max_element() <= LARGEST_M) {
             let found = format_args!("{}, {clearance_m} m from the nearest surface", self.start_ned_m);
             return Err(Error::parameter("start_ned_m", found, "a place with room"));
+        }
+        let start_m = -self.start_ned_m.z;
+        if !(low..=high).contains(&start_m) {
+            let found = format_args!("{}, at an altitude of {start_m} m", self.start_ned_m);
+            let expected = format_args!("one within altitude_m, {low} to {high} m");
+            return Err(Error::parameter("start_ned_m", found, expected));
         }
         Ok(())
     }

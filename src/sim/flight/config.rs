@@ -7,10 +7,10 @@ use crate::flow::{Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
-use crate::sim::SightConfig;
 use crate::sim::vehicle::{
     AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors, Wind,
 };
+use crate::sim::{Course, SightConfig};
 use crate::sphere::{Derotation, HeadingModel, Sphere};
 use crate::steer::SteerConfig;
 
@@ -50,6 +50,9 @@ impl Default for FlowNoise {
     }
 }
 
+/// The most frames that a command may act after its exposure: one second of them.
+pub const MAX_LATENCY_FRAMES: u32 = 30;
+
 /// What flies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
@@ -75,7 +78,8 @@ impl Default for Body {
 pub struct FlightConfig {
     /// What flies.
     pub body: Body,
-    /// Its airspeed, m/s, above 0.
+    /// Its airspeed, m/s: 0.1 to 1000 of a turn, and where an airframe flies level
+    /// ([`AirframeParams::level_speeds_m_s`]).
     pub speed_m_s: f64,
     /// The radius of the ball around its middle that must stay free, metres, above 0: half the wing span.
     pub radius_m: f64,
@@ -90,7 +94,7 @@ pub struct FlightConfig {
     /// What is done about it. The camera's mounting and the latency are set by the flight, and how the aircraft follows
     /// commands where that is known: of a coordinated turn.
     pub steer: SteerConfig,
-    /// Frames from an exposure until its command acts, at most 30.
+    /// Frames from an exposure until its command acts, at most [`MAX_LATENCY_FRAMES`].
     pub latency_frames: u32,
     /// What the gyro gets wrong.
     pub gyro: GyroErrors,
@@ -171,17 +175,37 @@ pub fn camera(size: Size) -> Camera {
 }
 
 impl FlightConfig {
+    /// When a flight of this course is given up, seconds.
+    pub(super) fn longest_s(&self, course: &Course) -> f64 {
+        self.patience * course.length_m / self.speed_m_s
+    }
+
+    /// Checks that every fault begins before a flight of this course is given up.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first that does not.
+    pub(crate) fn check_faults_in(&self, course: &Course) -> Result<()> {
+        let longest_s = self.longest_s(course);
+        let Some(fault) = self.faults.iter().find(|fault| !(fault.from_s <= longest_s)) else {
+            return Ok(());
+        };
+        let found = format_args!("{fault} in {}", course.name);
+        let expected = format_args!("one that begins before the flight is given up, at {longest_s:.1} s");
+        Err(Error::parameter("fault", found, expected))
+    }
+
     /// Checks every parameter's range.
     ///
     /// # Errors
     /// [`Error::Parameter`], naming the first one that is out of range, also for a fault that the sensor shows nothing of
-    /// and for a speed at which the body cannot fly level.
+    /// for a speed at which the body cannot fly level, and for a
+    /// camera whose picture has no view without its lens.
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         self.pipeline.validate()?;
+        self.pipeline.ideal(&self.camera)?;
         self.steer.validate()?;
         for (name, value, low, high) in [
-            ("speed_m_s", self.speed_m_s, 0.1, 1e3),
             ("radius_m", self.radius_m, 1e-3, 1e3),
             ("flow_noise.blur_px", self.flow_noise.blur_px, 1e-3, 1e3),
             ("flow_noise.white_px", self.flow_noise.white_px, 0.0, 1e3),
@@ -192,8 +216,9 @@ impl FlightConfig {
                 return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
             }
         }
-        if self.latency_frames > 30 {
-            return Err(Error::parameter("latency_frames", self.latency_frames, "0 to 30"));
+        if self.latency_frames > MAX_LATENCY_FRAMES {
+            let expected = format_args!("0 to {MAX_LATENCY_FRAMES}");
+            return Err(Error::parameter("latency_frames", self.latency_frames, expected));
         }
         if self.measure && self.sensor != Sensor::Images {
             let expected = format!("the sensor {}", Sensor::Images);
@@ -204,7 +229,12 @@ impl FlightConfig {
             ));
         }
         match &self.body {
-            Body::Turn(params) => params.validate()?,
+            Body::Turn(params) => {
+                params.validate()?;
+                if !(0.1..=1e3).contains(&self.speed_m_s) {
+                    return Err(Error::parameter("speed_m_s", self.speed_m_s, "0.1 to 1000 m/s"));
+                }
+            }
             Body::Airframe { params, autopilot } => {
                 autopilot.validate()?;
                 params.trim(self.speed_m_s)?;

@@ -14,11 +14,12 @@ pub enum FaultKind {
     Frozen,
     /// The pictures are black.
     Black,
-    /// This share of the pictures does not arrive, 0 to 1.
+    /// This share of the pictures does not arrive, 0 to 1. As text 0.2 where none is given.
     Dropped(f64),
     /// The gyro is silent.
     GyroLost,
-    /// The gyro says so much too much about each of its axes, rad/s, within ±[`MAX_BIAS_RAD_S`].
+    /// The gyro says so much too much about each of its axes, rad/s, within ±[`MAX_BIAS_RAD_S`]. As text 5 °/s where none is
+    /// given.
     GyroBias(f64),
     /// The frames' times are not numbers.
     NotANumber,
@@ -58,7 +59,8 @@ impl Fault {
             }
             FaultKind::GyroBias(bias_rad_s) if !(bias_rad_s.abs() <= MAX_BIAS_RAD_S) => {
                 let expected = format!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees());
-                let found = format_args!("{} °/s", bias_rad_s.to_degrees());
+                // To what was given: degrees made radians and degrees again are off in their last digits.
+                let found = format_args!("{} °/s", (1e6 * bias_rad_s.to_degrees()).round() / 1e6);
                 Err(Error::parameter("bias of the gyro", found, expected))
             }
             _ => Ok(()),
@@ -88,13 +90,14 @@ impl Fault {
 }
 
 /// What a fault is written like.
-const SYNTAX: &str = "KIND or KIND:FROM or KIND:FROM..UNTIL in seconds, KIND one of frozen, black, dropped=SHARE, \
-                      gyro-lost, gyro-bias=DEG_S, nan, device-lost";
+const SYNTAX: &str = "KIND or KIND:FROM or KIND:FROM..UNTIL in seconds, KIND one of frozen, black, dropped[=SHARE], \
+                      gyro-lost, gyro-bias[=DEG_S], nan, device-lost";
 
 impl FromStr for Fault {
     type Err = Error;
 
-    /// Reads `KIND`, `KIND:FROM` or `KIND:FROM..UNTIL`, such as `black:2..3` or `dropped=0.2`.
+    /// Reads `KIND`, `KIND:FROM` or `KIND:FROM..UNTIL`, such as `black:2..3` or `dropped=0.2`. `dropped` alone is a fifth of the
+    /// pictures, `gyro-bias` alone 5 °/s.
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || Error::parameter("fault", text, SYNTAX);
         let (kind, times) = text.split_once(':').unwrap_or((text, "0"));
@@ -188,5 +191,7 @@ mod tests {
             assert!(["fault", "share", "bias", "end"].iter().any(|word| error.contains(word)), "{error}");
             assert!(!error.contains('\n'), "{error}");
         }
+        let error = "gyro-bias=1e9".parse::<Fault>().unwrap_err().to_string();
+        assert_eq!(error, "bias of the gyro is 1000000000 °/s, expected within ±2005 °/s");
     }
 }

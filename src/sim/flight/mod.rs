@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-pub use config::{Body, FlightConfig, FlowNoise, Sensor, camera};
+pub use config::{Body, FlightConfig, FlowNoise, MAX_LATENCY_FRAMES, Sensor, camera};
 pub use fault::{Fault, FaultKind};
 pub use measure::{Divergences, Measured};
 pub use record::{Cost, Outcome, Record, Summary};
@@ -88,8 +88,8 @@ impl Flight {
     /// A flight from the beginning of a course. The first backend draws the pictures, the second one computes the flow.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range; as
-    /// [`Sight::new`](crate::sim::Sight::new) and [`Pipeline::new`](crate::Pipeline::new).
+    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range, also for a fault that begins after the flight is
+    /// given up; as [`Sight::new`](crate::sim::Sight::new) and [`Pipeline::new`](crate::Pipeline::new).
     pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
         config.validate()?;
         let mut config = config.clone();
@@ -111,6 +111,7 @@ impl Flight {
             };
         }
         course.validate()?;
+        config.check_faults_in(course)?;
         let random = Random::new(course.seed);
         let start = Start {
             position_ned_m: course.start_ned_m,
@@ -239,8 +240,7 @@ impl Flight {
         if record.progress_m >= self.course.length_m {
             return Some(Outcome::Reached);
         }
-        let patience_s = self.config.patience * self.course.length_m / self.config.speed_m_s;
-        if record.time_s > patience_s {
+        if record.time_s > self.config.longest_s(&self.course) {
             return Some(Outcome::TimedOut);
         }
         for step in 1..=STEPS {

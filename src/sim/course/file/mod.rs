@@ -1,7 +1,8 @@
 //! Files of courses: JSON that can be written by hand.
 //!
 //! Metres and radians, NED. `seed`, `start_yaw_rad`, `goal_yaw_rad` and `centre_line_m`, a list of points (north, east), may
-//! be left out and are then 0 or empty; every other member has to be there, and no further one is known.
+//! be left out and are then 0 or empty; every other member has to be there once, and no further one is known. docs/worlds.md
+//! says what each is.
 //!
 //! ```json
 //! {
@@ -27,6 +28,7 @@
 
 mod members;
 mod read;
+mod unique;
 mod write;
 
 pub use self::read::{decode, read};

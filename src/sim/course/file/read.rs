@@ -6,6 +6,7 @@ use glam::{DMat3, DVec2, DVec3};
 use serde_json::Value;
 
 use super::members::Members;
+use super::unique::Unique;
 use super::{FORMAT, VERSION};
 use crate::error::{Error, Result};
 use crate::sim::course::{Course, MAX_SURFACES, wall_between};
@@ -35,7 +36,7 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Course> {
         let expected = format!("at most {MAX_FILE} bytes");
         return Err(Error::format(path, "file length", format!("over {MAX_FILE} bytes"), expected));
     }
-    let value: Value = serde_json::from_slice(bytes)
+    let Unique(value) = serde_json::from_slice(bytes)
         .map_err(|error| Error::format(path, "course file", format!("broken: {error}"), "JSON"))?;
     let mut file = Members::new(path, "course file", String::new(), value)?;
     let format = file.text("format", &format!("{FORMAT:?}"))?;

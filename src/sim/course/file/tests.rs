@@ -65,6 +65,13 @@ fn a_file_by_hand_is_read() {
 }
 
 #[test]
+fn the_example_that_is_shown_is_read() {
+    let page = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/worlds.md"));
+    let example = page.split("```json\n").nth(1).unwrap().split("```").next().unwrap();
+    assert_eq!(load(example).unwrap(), load(YARD).unwrap());
+}
+
+#[test]
 fn the_courses_of_all_kinds_are_read_as_they_were_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("course.json");
@@ -105,6 +112,21 @@ fn what_is_wrong_is_named_with_its_place() {
             "-10]",
             "10]",
             "start_ned_m is [0, 0, 10], -10 m from the nearest surface, expected a place with room",
+        ),
+        (
+            "-10]",
+            "-31]",
+            "start_ned_m is [0, 0, -31], at an altitude of 31 m, expected one within altitude_m, 2 to 30 m",
+        ),
+        (
+            "\"version\": 1",
+            "\"version\": 1, \"version\": 1",
+            "course file is broken: member \"version\" is there twice at line 2 column 5",
+        ),
+        (
+            "0.3",
+            "0.3, \"radius_m\": 0.4",
+            "course file is broken: member \"radius_m\" is there twice at line 7",
         ),
         (
             "\"ground\"",
@@ -214,8 +236,11 @@ proptest! {
         name in "[^\\p{Cc}]{1,20}",
         numbers in (-7.0..7.0_f64, -7.0..7.0_f64, 1e-6..1e6_f64, 0.0..100.0_f64, 100.0..200.0_f64),
         start in vector(),
+        climbed in 0.0..=1.0_f64,
     ) {
         let (start_yaw_rad, goal_yaw_rad, length_m, low, high) = numbers;
+        // Within the band, else it is none to be written.
+        let start = DVec3 { z: -(low + climbed * (high - low)).min(high), ..start };
         let world = World { surfaces, up_world: DVec3::NEG_Z };
         prop_assume!(world.clearance_m(start) > 0.0);
         let course = Course {
