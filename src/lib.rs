@@ -47,6 +47,9 @@ pub mod sim;
 pub mod sphere;
 pub mod steer;
 
+/// The vectors and matrices of this crate's interface.
+pub use glam;
+
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};
 pub use pipeline::{Cue, Pipeline, PipelineConfig};

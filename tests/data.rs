@@ -11,7 +11,7 @@ use std::path::Path;
 
 use common::pair::{On, flow};
 use viewsphere::eval::flow_error;
-use viewsphere::flow::{Farneback, Outside, Update, Window};
+use viewsphere::flow::{Farneback, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, flo, picture};
 
 /// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a

@@ -24,8 +24,9 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-fn is_part(name: &String) -> bool {
-    name.starts_with(".flight.y4m.") && name.ends_with(".tmp")
+/// Whether it holds a part of a video.
+fn has_part(names: &[String]) -> bool {
+    names.iter().any(|name| name.starts_with(".flight.y4m.") && name.ends_with(".tmp"))
 }
 
 /// Begins a flight into the folder `a`.
@@ -39,7 +40,7 @@ fn fly(folder: &Path, args: &[&str]) -> Child {
 fn begun(folder: &Path) -> Child {
     let mut flight = fly(folder, &["--world", "forest:length=1000"]);
     let since = Instant::now();
-    while !names(&folder.join("a")).iter().any(is_part) {
+    while !has_part(&names(&folder.join("a"))) {
         assert!(since.elapsed().as_secs() < 60 && flight.try_wait().unwrap().is_none());
         sleep(Duration::from_millis(5));
     }
@@ -61,7 +62,7 @@ fn what_a_killed_flight_has_left_goes_with_the_next_one() {
         let folder = folder.path();
         let mut killed = begun(folder);
         // While it is flown the part of its video stays.
-        assert!(next(folder, more).iter().any(is_part));
+        assert!(has_part(&next(folder, more)));
         killed.kill().unwrap();
         killed.wait().unwrap();
         let video: &[&str] = if more.is_empty() { &["flight.y4m"] } else { &[] };
