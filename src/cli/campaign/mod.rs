@@ -53,7 +53,7 @@ Examples:
   viewsphere campaign --worlds forest --seeds 0..1000 --shard $SLURM_ARRAY_TASK_ID/10 -o part_$SLURM_ARRAY_TASK_ID
   viewsphere campaign merge part_* -o campaign/
 
-Exit codes: 0 done, whatever the flights ended with; 2 an error, also if a flight failed with one."
+Exit codes: 0 done, whatever the flights ended with; 2 an error, also if a flight failed with one; 130 stopped by a signal."
 )]
 pub(super) struct Campaign {
     #[command(subcommand)]

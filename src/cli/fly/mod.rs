@@ -63,7 +63,7 @@ Examples:
   viewsphere fly --world wires --seed 2 --save-world wires.json --no-video
   viewsphere fly --world-file wires.json -o wires/ && ffmpeg -i wires/flight.y4m wires/flight.mp4
 
-Exit codes: 0 the goal was reached, 1 it was not, 2 an error.")]
+Exit codes: 0 the goal was reached, 1 it was not, 2 an error, 130 stopped by a signal.")]
 pub(super) struct Fly {
     /// The world, with its parameters
     #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "forest")]
