@@ -109,7 +109,8 @@ pub(super) struct Fly {
     latency_frames: u32,
     /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped[=SHARE] (of the
     /// frames, 0.2 if not said), gyro-lost, gyro-bias[=DEG_S] (5 if not said), nan (in the frames' times) or device-lost
-    /// (once, without UNTIL). True depth shows gyro-lost alone, true flow gyro-bias too, images all
+    /// (without UNTIL: it is opened again, the second time not). True depth shows gyro-lost alone, true flow gyro-bias too,
+    /// images all
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
     /// Folder to write into; it is made if it is not there. Files of an earlier flight are replaced, others of these names not

@@ -23,7 +23,8 @@ pub enum FaultKind {
     GyroBias(f64),
     /// The frames' times are not numbers.
     NotANumber,
-    /// The device that computes the flow is destroyed, once: it has no end, and a flight may have several.
+    /// The device that computes the flow is destroyed. It has no end, as the engine opens the device again; a second time it
+    /// does not (see [`OnLoss`](crate::OnLoss)).
     DeviceLost,
 }
 
