@@ -107,11 +107,6 @@ fn with_faults(backends: [Backend; 2], faults: &[&str]) -> Vec<Record> {
     records(backends, &course("wall", 3), &config, 36)
 }
 
-fn invalid_at(records: &[Record], time_s: f64) -> Option<&str> {
-    let record = records.iter().find(|r| (r.time_s - time_s).abs() < 1e-6).unwrap();
-    record.invalid.as_deref()
-}
-
 #[test]
 fn each_fault_is_said_within_a_frame_and_passes() {
     for (fault, reason) in [
