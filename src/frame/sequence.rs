@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::pattern::{Numbered, glob_matches};
+use super::temporary::folder;
 use crate::error::{Error, Result};
 
 /// The files that an argument stands for.
@@ -55,10 +56,7 @@ pub fn expand(argument: &str) -> Result<Vec<PathBuf>> {
 
 /// The names in a pattern's folder. Names that are not UTF-8 cannot match, as patterns are.
 fn list(pattern: &Path) -> Result<Vec<String>> {
-    let folder = match pattern.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder(pattern);
     let failed = |source| Error::io(folder, source);
     let mut names = Vec::new();
     for entry in folder.read_dir().map_err(failed)? {

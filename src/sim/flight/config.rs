@@ -197,9 +197,8 @@ impl FlightConfig {
     /// Checks every parameter's range.
     ///
     /// # Errors
-    /// [`Error::Parameter`], naming the first one that is out of range, also for a fault that the sensor shows nothing of
-    /// for a speed at which the body cannot fly level, and for a
-    /// camera whose picture has no view without its lens.
+    /// [`Error::Parameter`], naming the first one that is out of range, also for a fault that the sensor shows nothing of,
+    /// for a speed at which the body cannot fly level, and for a camera whose picture has no view without its lens.
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         self.pipeline.validate()?;

@@ -53,7 +53,7 @@ impl Fault {
             FaultKind::DeviceLost if self.until_s.is_finite() => Err(Error::parameter(
                 "end of device-lost",
                 format_args!("{} s", self.until_s),
-                "none, as it happens once",
+                "none, as the device is opened again",
             )),
             FaultKind::Dropped(share) if !(0.0..=1.0).contains(&share) => {
                 Err(Error::parameter("share of dropped frames", share, "0 to 1"))
