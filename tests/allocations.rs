@@ -1,5 +1,7 @@
 //! What a frame allocates once a stream has begun.
 //!
+//! A process of its own: the allocator that counts is the whole program's, and no other test may run beside this one.
+//!
 //! On the CPU it is nothing: where a picture is large enough to be shared out, rayon takes a block for its queue of jobs
 //! now and then. On the GPU wgpu allocates in every submission, so the engine is held against the same work done with
 //! wgpu by hand. The two differ by a few, within [`SLACK`] a frame: wgpu itself is not the same in both (a bare `unmap`
@@ -8,14 +10,16 @@
 //! buffer or as many as a step's worth is ours; that what is held does not grow is exact.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
-mod common;
+#[path = "common/need.rs"]
+#[expect(dead_code, reason = "the CPU is tested in any case")]
+mod need;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
 
 use viewsphere::engine::{Backend, Config, Engine};
 use viewsphere::frame::{Frame, PixelFormat, Size};
-use viewsphere::gpu::{Gpu, GpuExecutor, GpuOptions};
+use viewsphere::gpu::{Gpu, GpuExecutor};
 use viewsphere::plan::{Plan, Shape};
 use wgpu::{BufferDescriptor, BufferUsages, MapMode, PollType};
 
@@ -126,12 +130,11 @@ fn a_frame_takes_no_memory() {
     assert!(count <= FRAMES as u64, "{count} allocations in {FRAMES} frames");
     assert!(live.abs() < 64 << 10, "{live} bytes");
 
-    let Some(gpu) = common::gpu() else { return };
+    let Some(gpu) = need::gpu_if_any() else { return };
     let config = Config::default();
     let plan = config.flow.plan(small, config.format).unwrap();
     // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
-    let name = gpu.adapter().name.clone();
-    let open = || Gpu::new(&GpuOptions { adapter: Some(name.clone()), allow_software: true }).unwrap();
+    let open = || gpu.reopen().unwrap();
     let (hand, hand_live) = by_hand(&open(), &plan);
     let (ours, live) = stream(Backend::Gpu(open()), small, &config);
     eprintln!("by hand: {hand} allocations in {FRAMES} frames, {hand_live} bytes more held");
