@@ -17,10 +17,11 @@ mod need;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
 
-use viewsphere::engine::{Backend, Config, Engine};
+use viewsphere::flow;
 use viewsphere::frame::{Frame, PixelFormat, Size};
 use viewsphere::gpu::{Gpu, GpuExecutor};
-use viewsphere::plan::{Plan, Shape};
+use viewsphere::plan::Plan;
+use viewsphere::{Backend, Config, Engine, StreamConfig};
 use wgpu::{BufferDescriptor, BufferUsages, MapMode, PollType};
 
 /// Counts what goes through the system's allocator.
@@ -89,8 +90,8 @@ fn stream(backend: Backend, size: Size, config: &Config) -> (u64, i64) {
 fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
     let (device, queue) = (gpu.device(), gpu.queue());
     let exec = GpuExecutor::new(gpu, plan).unwrap();
-    let (frame_bytes, flow_bytes) =
-        (4 * plan.buf(plan.frame).len as u64, 4 * Shape::planar(plan.size, 2).len() as u64);
+    let (frame, flow) = (&plan.inputs[0], plan.output("flow").unwrap());
+    let (frame_bytes, flow_bytes) = (4 * frame.kind.len() as u64, 4 * flow.kind.len() as u64);
     let buffer = |size, usage, mapped_at_creation| {
         device.create_buffer(&BufferDescriptor { label: Some("by hand"), size, usage, mapped_at_creation })
     };
@@ -102,13 +103,13 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
         drop(view);
         upload.unmap();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&upload, 0, exec.buf(plan.frame), 0, frame_bytes);
+        encoder.copy_buffer_to_buffer(&upload, 0, exec.buf(frame.bufs[i & 1]), 0, frame_bytes);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             exec.record_ingest(&mut pass, i & 1);
             exec.record_pair(&mut pass, i & 1);
         }
-        encoder.copy_buffer_to_buffer(exec.buf(plan.flow[i & 1]), 0, &readback, 0, flow_bytes);
+        encoder.copy_buffer_to_buffer(exec.buf(flow.bufs[i & 1]), 0, &readback, 0, flow_bytes);
         let submission_index = Some(queue.submit([encoder.finish()]));
         upload.map_async(MapMode::Write, .., |_| {});
         readback.map_async(MapMode::Read, .., |_| {});
@@ -122,7 +123,14 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
 #[test]
 fn a_frame_takes_no_memory() {
     let small = Size::new(64, 48);
-    for config in [Config::default(), Config { timestamps: true, warm_start: true, ..Config::default() }] {
+    for config in [
+        Config::default(),
+        Config {
+            stream: StreamConfig { timestamps: true, ..StreamConfig::default() },
+            warm_start: true,
+            ..Config::default()
+        },
+    ] {
         assert_eq!(stream(Backend::Cpu, small, &config), (0, 0), "on the CPU");
     }
     let (count, live) = stream(Backend::Cpu, Size::new(320, 240), &Config::default());
@@ -132,7 +140,7 @@ fn a_frame_takes_no_memory() {
 
     let Some(gpu) = need::gpu_if_any() else { return };
     let config = Config::default();
-    let plan = config.flow.plan(small, config.format).unwrap();
+    let plan = flow::plan(&config.algorithm, small, config.format, config.options()).unwrap();
     // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
     let open = || gpu.reopen().unwrap();
     let (hand, hand_live) = by_hand(&open(), &plan);

@@ -18,7 +18,7 @@ fn config(sensor: Sensor, faults: &[&str]) -> FlightConfig {
     let mut config =
         FlightConfig { sensor, camera: camera(Size::new(160, 120)), faults, ..FlightConfig::default() };
     config.pipeline.sphere.sectors = [12, 9];
-    config.pipeline.engine.read_flow = true;
+    config.pipeline.read_flow = true;
     config
 }
 

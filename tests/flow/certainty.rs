@@ -1,25 +1,22 @@
 //! Flow of frames that come with a certainty: what is masked does no harm, and what is not masked is not changed.
 
-use viewsphere::cpu::CpuExecutor;
 use viewsphere::flow::Farneback;
-use viewsphere::frame::{PixelFormat, Size};
-use viewsphere::gpu::GpuExecutor;
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
 use viewsphere::kernels::{cases::Random, certain_expansion_x, certain_expansion_y, tables};
-use viewsphere::plan::Plan;
 
 use crate::need;
+use crate::pair::{Beside, On, flow_with};
 
 const SIZE: Size = Size::new(161, 121);
 const MOTION: [f32; 2] = [2.5, -1.25];
 /// Left, top, right and bottom of a region that does not move with the rest.
 const LOGO: [usize; 4] = [60, 45, 100, 75];
 
-/// A frame as its buffer holds it, and its certainty.
-type Frame = [Vec<f32>; 2];
+/// A picture and its certainty.
+type Frame = (Image, Plane);
 
-fn plan(certainty: bool) -> Plan {
-    let config = Farneback { certainty, levels: 2, ..Farneback::default() };
-    config.plan(SIZE, PixelFormat::Gray8).expect("a legal configuration")
+fn farneback() -> Farneback {
+    Farneback { levels: 2, ..Farneback::default() }
 }
 
 /// Whether a pixel is in the region or at most `margin` pixels from it.
@@ -35,7 +32,6 @@ fn frames(logo: bool, certainty: impl Fn(usize, usize) -> f32) -> [Frame; 2] {
         let mut bytes = Vec::new();
         let mut certainties = Vec::new();
         for y in 0..SIZE.height as usize {
-            let start = bytes.len();
             for x in 0..SIZE.width as usize {
                 let [u, v] = [x as f32 - time * MOTION[0], y as f32 - time * MOTION[1]];
                 let waves = [[0.31, 0.17], [-0.23, 0.29], [0.11, -0.37], [0.43, 0.05]];
@@ -46,38 +42,33 @@ fn frames(logo: bool, certainty: impl Fn(usize, usize) -> f32) -> [Frame; 2] {
                 bytes.push(value.round() as u8);
                 certainties.push(certainty(x, y));
             }
-            bytes.resize(start + (SIZE.width as usize).next_multiple_of(4), 0);
-            let last = certainties[certainties.len() - 1];
-            certainties.resize(bytes.len(), last);
         }
-        [bytemuck::pod_collect_to_vec(&bytes), certainties]
+        (
+            Image { size: SIZE, format: PixelFormat::Gray8, data: bytes },
+            Plane { size: SIZE, data: certainties },
+        )
     })
 }
 
-fn flow_on_cpu(plan: &Plan, frames: &[Frame; 2]) -> Vec<f32> {
-    let mut cpu = CpuExecutor::new(plan);
-    for (parity, [frame, certainty]) in frames.iter().enumerate() {
-        cpu.buf_mut(plan.frame).copy_from_slice(frame);
-        if let Some(id) = plan.certainty {
-            cpu.buf_mut(id).copy_from_slice(certainty);
-        }
-        plan.ingest[parity].iter().for_each(|step| cpu.run(step));
-    }
-    plan.pair[1].iter().for_each(|step| cpu.run(step));
-    cpu.buf(plan.flow[1]).to_vec()
+/// The flow of two pictures, with their certainty or without.
+fn flow_of(on: On<'_>, farneback: Farneback, with: bool, frames: &[Frame; 2]) -> FlowField {
+    let [(first, first_certainty), (second, second_certainty)] = frames;
+    let certainty = with.then_some([first_certainty, second_certainty]);
+    flow_with(on, farneback, [first, second], Beside { certainty, ..Beside::default() })
+}
+
+fn flow_on_cpu(with: bool, frames: &[Frame; 2]) -> FlowField {
+    flow_of(On::Cpu, farneback(), with, frames)
 }
 
 /// The flow of each pixel: column, row, x, y.
-fn pixels(flow: &[f32]) -> impl Iterator<Item = (usize, usize, [f32; 2])> + '_ {
-    let stride = SIZE.stride();
-    (0..SIZE.height as usize).flat_map(move |y| {
-        let at = 2 * y * stride;
-        (0..SIZE.width as usize).map(move |x| (x, y, [flow[at + x], flow[at + stride + x]]))
-    })
+fn pixels(flow: &FlowField) -> impl Iterator<Item = (usize, usize, [f32; 2])> + '_ {
+    let width = SIZE.width as usize;
+    flow.data.iter().enumerate().map(move |(i, flow)| (i % width, i / width, *flow))
 }
 
 /// The mean error of the flow around the logo, not in it.
-fn error_around(flow: &[f32]) -> f32 {
+fn error_around(flow: &FlowField) -> f32 {
     let errors: Vec<f32> = pixels(flow)
         .filter(|&(x, y, _)| near_logo(x, y, 12) && !near_logo(x, y, 0))
         .map(|(_, _, [u, v])| (u - MOTION[0]).hypot(v - MOTION[1]))
@@ -85,7 +76,8 @@ fn error_around(flow: &[f32]) -> f32 {
     errors.iter().sum::<f32>() / errors.len() as f32
 }
 
-fn largest_difference(a: &[f32], b: &[f32]) -> f32 {
+fn largest_difference(a: &FlowField, b: &FlowField) -> f32 {
+    let (a, b) = (a.data.as_flattened(), b.data.as_flattened());
     assert!(a.iter().chain(b).all(|d| d.is_finite()), "every flow is a number");
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
@@ -95,11 +87,10 @@ fn certainty_of_one_changes_nothing() {
     let frames = frames(true, |_, _| 1.0);
     for (poly_n, poly_sigma) in [(5, 1.2), (7, 1.5), (1, 0.0), (32, 0.0), (32, 100.0)] {
         let [without, with] = [false, true].map(|certainty| {
-            let config = Farneback { certainty, poly_n, poly_sigma, levels: 2, ..Farneback::default() };
-            flow_on_cpu(&config.plan(SIZE, PixelFormat::Gray8).expect("a legal configuration"), &frames)
+            flow_of(On::Cpu, Farneback { poly_n, poly_sigma, ..farneback() }, certainty, &frames)
         });
         let difference = largest_difference(&without, &with);
-        let largest = without.iter().fold(0.0f32, |largest, d| largest.max(d.abs()));
+        let largest = without.data.as_flattened().iter().fold(0.0f32, |largest, d| largest.max(d.abs()));
         println!("radius {poly_n}, sigma {poly_sigma}: {difference:e} of {largest:e} px");
         // Rounding of the expansion, some 10⁻⁴ of a gray level, through two levels of three iterations. Of
         // the largest flow, for that of the widest neighbourhoods is small.
@@ -111,13 +102,13 @@ fn certainty_of_one_changes_nothing() {
 #[test]
 fn a_certainty_of_a_half_is_as_half_the_contrast() {
     let with_bytes = |change: fn(u8) -> u8| {
-        frames(true, |_, _| 0.5).map(|[frame, certainty]| {
-            let bytes: Vec<u8> = bytemuck::cast_slice(&frame).iter().map(|&byte| change(byte)).collect();
-            [bytemuck::pod_collect_to_vec(&bytes), certainty]
+        frames(true, |_, _| 0.5).map(|(mut image, certainty)| {
+            image.data.iter_mut().for_each(|byte| *byte = change(*byte));
+            (image, certainty)
         })
     };
     let (whole, half) = (with_bytes(|byte| byte & !1), with_bytes(|byte| byte / 2));
-    let difference = largest_difference(&flow_on_cpu(&plan(false), &half), &flow_on_cpu(&plan(true), &whole));
+    let difference = largest_difference(&flow_on_cpu(false, &half), &flow_on_cpu(true, &whole));
     println!("{difference:e} px");
     // Rounding, as where a certainty of one is held against none.
     assert!(difference < 2e-3, "{difference} px");
@@ -126,8 +117,8 @@ fn a_certainty_of_a_half_is_as_half_the_contrast() {
 #[test]
 fn masked_region_does_not_disturb_its_surroundings() {
     let frames = frames(true, |x, y| if near_logo(x, y, 0) { 0.0 } else { 1.0 });
-    let without = error_around(&flow_on_cpu(&plan(false), &frames));
-    let with = error_around(&flow_on_cpu(&plan(true), &frames));
+    let without = error_around(&flow_on_cpu(false, &frames));
+    let with = error_around(&flow_on_cpu(true, &frames));
     println!("without {without} px, with {with} px");
     assert!(with < 0.1 && 3.0 * with < without, "without {without} px, with {with} px");
 }
@@ -137,14 +128,14 @@ fn what_is_in_a_masked_region_has_no_effect() {
     let mask = |x, y| if near_logo(x, y, 0) { 0.0 } else { 1.0 };
     let (blank, full) = (frames(false, mask), frames(true, mask));
     assert_ne!(blank, full);
-    assert_eq!(flow_on_cpu(&plan(true), &blank), flow_on_cpu(&plan(true), &full));
+    assert_eq!(flow_on_cpu(true, &blank), flow_on_cpu(true, &full));
 }
 
 #[test]
 fn no_certainty_gives_no_flow() {
     for nothing in [0.0, -1.0, f32::NAN, f32::NEG_INFINITY] {
-        let flow = flow_on_cpu(&plan(true), &frames(true, |_, _| nothing));
-        assert!(flow.iter().all(|d| *d == 0.0), "of certainty {nothing}");
+        let flow = flow_on_cpu(true, &frames(true, |_, _| nothing));
+        assert!(flow.data.iter().all(|d| *d == [0.0; 2]), "of certainty {nothing}");
     }
 }
 
@@ -152,26 +143,18 @@ fn no_certainty_gives_no_flow() {
 fn certainties_out_of_range_are_held_within_it() {
     let held = frames(true, |x, y| if near_logo(x, y, 0) { 0.0 } else { 1.0 });
     let wild = frames(true, |x, y| if near_logo(x, y, 0) { f32::NAN } else { 7.0 + x as f32 });
-    assert_eq!(flow_on_cpu(&plan(true), &held), flow_on_cpu(&plan(true), &wild));
+    assert_eq!(flow_on_cpu(true, &held), flow_on_cpu(true, &wild));
 }
 
 #[test]
 fn both_executors_agree() {
     let Some(gpu) = need::gpu() else { return };
-    let plan = plan(true);
     let frames = frames(true, |x, y| match near_logo(x, y, 0) {
         true => 0.0,
         false => 0.25 + 0.75 * (x % 16) as f32 / 15.0,
     });
-    let executor = GpuExecutor::new(&gpu, &plan).expect("the plan fits the device");
-    for (parity, [frame, certainty]) in frames.iter().enumerate() {
-        executor.write(plan.frame, frame);
-        executor.write(plan.certainty.expect("the plan takes a certainty"), certainty);
-        let steps = if parity == 0 { plan.ingest[0].len() } else { plan.steps(1).count() };
-        (0..steps).for_each(|i| executor.run(parity, i).expect("a step runs"));
-    }
-    let expected = flow_on_cpu(&plan, &frames);
-    let found = executor.read(plan.flow[1], expected.len()).expect("the flow is read");
+    let expected = flow_on_cpu(true, &frames);
+    let found = flow_of(On::Gpu(&gpu), farneback(), true, &frames);
     let difference = largest_difference(&expected, &found);
     println!("{difference:e} px");
     // Rounding of the expansion, as where a certainty of one is held against none.

@@ -9,7 +9,7 @@ const SIZE: Size = Size::new(320, 240);
 
 /// Mean endpoint error in px of ten equal shares of the pixels, from the least confident to the most.
 fn deciles(flow: Farneback, frames: &[Image; 2], scene: &Scene) -> [f64; 10] {
-    let config = Config { flow: Farneback { confidence: true, ..flow }, ..Config::default() };
+    let config = Config { algorithm: flow.into(), confidence: true, ..Config::default() };
     let mut engine = Engine::new(Backend::Cpu, SIZE, &config).expect("the configuration is legal");
     engine.process(&frames[0].frame().expect("whole")).expect("the CPU computes");
     let output =

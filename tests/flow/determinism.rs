@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use viewsphere::Error;
-use viewsphere::flow::{Farneback, Outside, Update, Window};
+use viewsphere::flow::{Algorithm, Farneback, FlowOptions, Initial, Outside, Update, Window, plan};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
 use viewsphere::kernels::cases::Random;
 
@@ -17,7 +17,7 @@ fn noise(size: Size, format: PixelFormat, seed: u32) -> Image {
 }
 
 fn noise_flow(on: On<'_>, config: &Farneback, size: Size, format: PixelFormat) -> FlowField {
-    flow(on, config, [&noise(size, format, 1), &noise(size, format, 2)], None)
+    flow(on, config.clone(), [&noise(size, format, 1), &noise(size, format, 2)], None)
 }
 
 fn bits(field: &FlowField) -> Vec<[u32; 2]> {
@@ -110,7 +110,6 @@ fn legal() -> impl Strategy<Value = Farneback> {
             window,
             update,
             outside,
-            ..Farneback::default()
         },
     )
 }
@@ -130,7 +129,9 @@ fn format() -> impl Strategy<Value = PixelFormat> {
 
 fn named(config: &Farneback) -> Option<&'static str> {
     let size = Size::new(40, 40);
-    match (config.validate(), config.plan(size, PixelFormat::Gray8).map(|_| ())) {
+    let algorithm = Algorithm::from(config.clone());
+    let plan = plan(&algorithm, size, PixelFormat::Gray8, FlowOptions::default());
+    match (algorithm.validate(), plan.map(|_| ())) {
         (Ok(()), Ok(())) => None,
         (Err(Error::Parameter { name, .. }), Err(Error::Parameter { name: again, .. })) if name == again => {
             Some(name)
@@ -145,8 +146,10 @@ proptest! {
     #[test]
     fn legal_parameters_make_a_plan(config in legal(), size in small_size(), initial_flow: bool) {
         // The plan is checked when it is built.
-        let config = Farneback { initial_flow, iterations: config.iterations.min(20), ..config };
-        let plan = config.plan(size, PixelFormat::Gray8);
+        let config = Farneback { iterations: config.iterations.min(20), ..config };
+        let initial = if initial_flow { Initial::Given } else { Initial::Zero };
+        let options = FlowOptions { initial, ..FlowOptions::default() };
+        let plan = plan(&config.into(), size, PixelFormat::Gray8, options);
         prop_assert!(plan.is_ok(), "{:?}", plan.err());
     }
 

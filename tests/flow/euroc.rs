@@ -8,7 +8,7 @@ use viewsphere::flow::Farneback;
 use viewsphere::frame::picture;
 use viewsphere::imu::{self, GyroConfig};
 use viewsphere::sphere::{Derotation, Fields, Sphere};
-use viewsphere::{Backend, Config, Pipeline, PipelineConfig};
+use viewsphere::{Backend, Pipeline, PipelineConfig};
 
 use crate::data;
 use crate::quantile::quantile;
@@ -57,12 +57,7 @@ fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64
     let (body_from_camera, _) = extrinsics();
     let camera = camera::read(folder.join("cam0_sensor.yaml")).unwrap_or_else(|error| panic!("{error}"));
     let config = PipelineConfig {
-        engine: Config {
-            flow: Farneback::accurate(),
-            read_flow: false,
-            read_confidence: false,
-            ..Config::default()
-        },
+        algorithm: Farneback::accurate().into(),
         sphere: Sphere { derotation, ..Sphere::default() },
         gyro: Some(GyroConfig {
             bias_rad_s: bias.unwrap_or(truth[0].bias),
@@ -94,7 +89,8 @@ fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64
         let stride = ideal.size.stride();
         let cells = pipeline.cells().size;
         let cue = pipeline.process(&frame, time_s).unwrap_or_else(|error| panic!("{error}"));
-        if let (Some(now), Some(then), [looming, tangent]) = (at, before, cue.fields) {
+        if let (Some(now), Some(then), Some((looming, tangent))) = (at, before, cue.looming.zip(cue.tangent))
+        {
             assert_eq!(cue.invalid, None);
             let step = truth[now].world_from_camera.transpose() * (truth[now].place - truth[then].place);
             for y in (0..ideal.size.height as usize).step_by(3) {

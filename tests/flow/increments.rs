@@ -53,7 +53,7 @@ fn increments_keep_what_changes_within_the_window() {
     ];
     for iterations in [1, 2, 3] {
         let error = |update| {
-            let found = flow(On::Cpu, &settings(update, iterations), frames.each_ref(), None);
+            let found = flow(On::Cpu, settings(update, iterations), frames.each_ref(), None);
             error_px(&found, |at| from_middle(at).map(|from| GROWTH * from))
         };
         let [whole, increment] = [Update::Flow, Update::Increment].map(error);
@@ -67,7 +67,7 @@ fn both_find_a_motion_that_is_the_same_everywhere() {
     let motion = [2.3, -1.4];
     let frames = [frame(|at| at), frame(|at| std::array::from_fn(|k| at[k] - motion[k]))];
     for update in [Update::Flow, Update::Increment] {
-        let found = flow(On::Cpu, &settings(update, 2), frames.each_ref(), None);
+        let found = flow(On::Cpu, settings(update, 2), frames.each_ref(), None);
         let error = error_px(&found, |_| motion);
         println!("{update:?}: {error:.4} px");
         // A twentieth of a pixel is what rounding to whole gray levels leaves of these pictures.

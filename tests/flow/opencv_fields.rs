@@ -69,7 +69,6 @@ fn case(folder: &Path, line: &str) -> Case {
         poly_n: poly_n.parse().unwrap(),
         poly_sigma: poly_sigma.parse().unwrap(),
         window,
-        initial_flow: !init.is_empty(),
         ..Farneback::default()
     };
     Case {

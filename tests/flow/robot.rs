@@ -22,12 +22,7 @@ fn camera() -> Camera {
 /// The rate at which the ground comes nearer, 1/s, half-way between each frame and the one before.
 fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
     let config = PipelineConfig {
-        engine: viewsphere::Config {
-            flow: Farneback::accurate(),
-            read_flow: false,
-            read_confidence: false,
-            ..viewsphere::Config::default()
-        },
+        algorithm: Farneback::accurate().into(),
         sphere: Sphere { window: 12, least_trust: 0.01, ..Sphere::default() },
         fields: Fields { looming: true, ..Fields::default() },
         ..PipelineConfig::default()
@@ -42,7 +37,7 @@ fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
         let frame = image.frame().unwrap_or_else(|error| panic!("{error}"));
         let time_s = f64::from(number) / RATE_HZ;
         let cue = pipeline.process(&frame, time_s).unwrap_or_else(|error| panic!("{error}"));
-        let [looming] = cue.fields else { continue };
+        let Some(looming) = cue.looming else { continue };
         // The cell in the middle, where the divergence on the sphere is that in the plane: 2/τ over flat ground below.
         let stride = cells.size.stride();
         let at = |channel: usize| looming[(4 * 15 + channel) * stride + 20];

@@ -6,10 +6,10 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, advance, area, binomial, cast, cells, certain_expansion_x, certain_expansion_y, certain_matrices,
-    compare, confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices, prime, remap,
-    resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample, weigh,
-    window_y,
+    ALL, advance, area, binomial, cast, cell_mean, cells, certain_expansion_x, certain_expansion_y,
+    certain_matrices, compare, confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices,
+    prime, remap, resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample,
+    weigh, window_y,
 };
 
 use crate::need;
@@ -89,6 +89,8 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&tangent::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),
     (&trust::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
     (&trust::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&cell_mean::KERNEL, "select(0.0, 1.0, there)", "1.0"),
+    (&cell_mean::KERNEL, "* certainty[here]", "+ certainty[here]"),
     (&cells::KERNEL, " - m.xy / z * seen.flow.z", ""),
     (&cells::KERNEL, "known && m.z > 0.01", "m.z > 0.01"),
     (&looming::KERNEL, "- 3.0 * dot(origin, here)", "- 2.0 * dot(origin, here)"),

@@ -70,7 +70,7 @@ fn both_executors_say_the_same() {
     for derotation in [Derotation::Before, Derotation::After, Derotation::Primed] {
         let mut config = with_gyro();
         config.sphere = Sphere { derotation, ..Sphere::default() };
-        config.engine.flow.certainty = derotation == Derotation::Before;
+        config.certainty = derotation == Derotation::Before;
         let [on_gpu, on_cpu] = [Backend::Gpu(gpu.clone()), Backend::Cpu].map(|b| run(b, &small(), &config));
         for ((invalid, found, heading), (cpu_invalid, expected, cpu_heading)) in on_gpu.iter().zip(&on_cpu) {
             assert_eq!(invalid, cpu_invalid);
@@ -175,7 +175,7 @@ fn what_is_not_textured_or_masked_is_not_trusted() {
     let mask = Plane { size: camera.size, data: (0..camera.size.pixels()).map(masked).collect() };
     for certainty in [false, true] {
         let mut config = PipelineConfig { mask: Some(mask.clone()), ..with_gyro() };
-        config.engine.flow.certainty = certainty;
+        config.certainty = certainty;
         let (invalid, sectors, _) =
             run(Backend::Cpu, &camera, &config).pop().unwrap_or_else(|| panic!("no cue"));
         assert_eq!(invalid, None);
@@ -195,7 +195,7 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
         ..with_gyro()
     };
     let mut config_with_flow = config.clone();
-    config_with_flow.engine.read_flow = true;
+    config_with_flow.read_flow = true;
     for backend in [Some(Backend::Cpu), need::gpu_if_any().map(Backend::Gpu)].into_iter().flatten() {
         let mut pipeline = good(Pipeline::new(backend, &camera, &config_with_flow));
         gyro(&mut pipeline, |_| true);
@@ -206,8 +206,8 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
             if i == 0 {
                 continue;
             }
-            let lengths: Vec<usize> = cue.fields.iter().map(Vec::len).collect();
-            assert_eq!(lengths, [28 * 19 * 4, 28 * 19 * 5, 200 * 150 * 3]);
+            let lengths = [cue.looming, cue.cells, cue.tangent].map(|values| values.map(<[f32]>::len));
+            assert_eq!(lengths, [28 * 19 * 4, 28 * 19 * 5, 200 * 150 * 3].map(Some));
             assert_eq!(cue.flow.map(|flow| flow.size), Some(ideal.size));
             assert_eq!(cue.invalid, None);
         }
@@ -253,9 +253,6 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(wrong, "mask is 3×2, expected 320×240");
     let with_lens = PipelineConfig { ideal: Some(camera), ..PipelineConfig::default() };
     assert_eq!(text(new(&camera, with_lens)), "ideal is a camera with a lens, expected one without");
-    let mut warm = PipelineConfig::default();
-    warm.engine.warm_start = true;
-    assert_eq!(text(new(&camera, warm)), "warm_start is true, expected false in a pipeline");
     let sectors = Sphere { sectors: [0, 9], ..Sphere::default() };
     let wrong = text(new(&camera, PipelineConfig { sphere: sectors, ..PipelineConfig::default() }));
     assert_eq!(wrong, "sectors is 0, expected 1 to 256");
@@ -272,7 +269,7 @@ fn what_does_not_fit_is_refused() {
 fn frames_in_flight_keep_their_times() {
     let camera = small();
     let mut config = with_gyro();
-    config.engine.in_flight = 3;
+    config.stream.in_flight = 3;
     let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &config));
     gyro(&mut pipeline, |_| true);
     let frames = frames(&camera, 3);

@@ -69,10 +69,7 @@ fn a_turn_alone_leaves_next_to_nothing() {
         let flight = turning(degrees_s, DVec3::ZERO);
         let (mut squares, mut pixels, mut divergences, mut means) = (0.0, 0, Vec::new(), Vec::new());
         fly(config(Derotation::Before), &world(), &flight, 0.05, 3, |cue, ideal| {
-            if cue.fields.is_empty() {
-                return;
-            }
-            let [looming, tangent] = cue.fields else { panic!("{} fields", cue.fields.len()) };
+            let (Some(looming), Some(tangent)) = (cue.looming, cue.tangent) else { return };
             for (flow, pixel) in tangents(tangent, ideal.size) {
                 if trusted(looming, pixel, ideal.size) {
                     squares += flow.length_squared() * ideal.f_u * ideal.f_v;
@@ -104,13 +101,11 @@ fn translational_error_px(derotation: Derotation, degrees_s: [f64; 3]) -> [f64; 
     let flight = turning(degrees_s, DVec3::new(0.0, 0.0, 10.0));
     let mut errors = Vec::new();
     fly(config(derotation), &world, &flight, 0.1, 4, |cue, ideal: &Camera| {
-        if cue.fields.is_empty() {
-            return;
-        }
+        let (Some(looming), Some(tangent)) = (cue.looming, cue.tangent) else { return };
         let pose = flight.pose(cue.time_s);
         let moved = flight.velocity_camera(cue.time_s) / RATE_HZ;
-        for (found, pixel) in tangents(&cue.fields[1], ideal.size) {
-            if !trusted(&cue.fields[0], pixel, ideal.size) {
+        for (found, pixel) in tangents(tangent, ideal.size) {
+            if !trusted(looming, pixel, ideal.size) {
                 continue;
             }
             let Some(now) = ideal.ray(pixel) else { continue };

@@ -7,8 +7,8 @@ use super::eye::{Moment, Said};
 use super::fault::{Fault, FaultKind};
 use super::measure::Measure;
 use super::record::Cost;
+use crate::backend::Backend;
 use crate::camera::{Camera, Pose};
-use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat};
 use crate::imu::GyroSample;
@@ -83,7 +83,7 @@ impl CameraEye {
         let due = faults.iter().filter(due).count();
         if due > self.losses {
             self.losses = due;
-            if let Some(gpu) = self.pipeline.engine().gpu() {
+            if let Some(gpu) = self.pipeline.gpu() {
                 gpu.device().destroy();
             }
         }

@@ -23,8 +23,8 @@ pub use fault::{Fault, FaultKind};
 pub use measure::{Divergences, Measured};
 pub use record::{Cost, Outcome, Record, Summary};
 
+use crate::backend::Backend;
 use crate::camera::{Camera, FRD_FROM_CAMERA, roll_pitch_yaw_rad};
-use crate::engine::Backend;
 use crate::error::Result;
 use crate::frame::Image;
 use crate::pipeline::Cue;

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use viewsphere::engine::{Backend, Config, TimeSource};
 use viewsphere::frame::{Image, Size};
+use viewsphere::stream::TimeSource;
+use viewsphere::{Backend, Config, StreamConfig};
 
 use super::pictures::{backends, engine, flows, gray};
 use crate::need::{self, Without};
@@ -17,7 +18,10 @@ fn images(count: u32) -> Vec<Image> {
 #[test]
 fn every_step_has_its_time_and_together_they_fit_the_latency() {
     for (name, backend) in backends() {
-        let config = Config { timestamps: true, ..Config::default() };
+        let config = Config {
+            stream: StreamConfig { timestamps: true, ..StreamConfig::default() },
+            ..Config::default()
+        };
         let mut engine = engine(&backend, SIZE, &config);
         let first = engine.process(&images(1)[0].frame().unwrap()).unwrap().is_none();
         assert!(first);

@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use viewsphere::engine::{Backend, Config, Ticket};
 use viewsphere::frame::{Image, PixelFormat, Size};
+use viewsphere::stream::Ticket;
+use viewsphere::{Backend, Config, StreamConfig};
 use viewsphere::{Engine, Error};
 
 use super::pictures::{assert_same, backends, engine, flows, gray, picture};
@@ -39,10 +40,19 @@ fn a_wrong_frame_leaves_the_stream_as_it_was() {
 #[test]
 fn wrong_configurations_are_refused() {
     for (config, text) in [
-        (Config { in_flight: 0, ..Config::default() }, "in_flight is 0, expected 1 to 8"),
-        (Config { in_flight: 9, ..Config::default() }, "in_flight is 9, expected 1 to 8"),
         (
-            Config { in_flight: 1, drop_oldest: true, ..Config::default() },
+            Config { stream: StreamConfig { in_flight: 0, ..StreamConfig::default() }, ..Config::default() },
+            "in_flight is 0, expected 1 to 8",
+        ),
+        (
+            Config { stream: StreamConfig { in_flight: 9, ..StreamConfig::default() }, ..Config::default() },
+            "in_flight is 9, expected 1 to 8",
+        ),
+        (
+            Config {
+                stream: StreamConfig { in_flight: 1, drop_oldest: true, ..StreamConfig::default() },
+                ..Config::default()
+            },
             "in_flight is 1, expected 2 to 8 where the oldest is dropped",
         ),
     ] {
@@ -104,7 +114,10 @@ fn polling_ends() {
 fn the_oldest_waiting_frame_gives_way() {
     let images: Vec<Image> = (0..4).map(|n| gray(n, SIZE)).collect();
     for (name, backend) in backends() {
-        let config = Config { drop_oldest: true, ..Config::default() };
+        let config = Config {
+            stream: StreamConfig { drop_oldest: true, ..StreamConfig::default() },
+            ..Config::default()
+        };
         let mut engine = engine(&backend, SIZE, &config);
         let tickets: Vec<_> = images.iter().map(|i| engine.submit(&i.frame().unwrap()).unwrap()).collect();
         let output = engine.wait(tickets[3]).unwrap().unwrap();
@@ -128,7 +141,10 @@ fn a_late_frame_may_be_asked_for_again() {
     let images: Vec<Image> = (0..2).map(|n| gray(n, size)).collect();
     for (name, backend) in backends() {
         let expected = flows(&mut engine(&backend, size, &Config::default()), &images);
-        let config = Config { deadline: Some(Duration::ZERO), ..Config::default() };
+        let config = Config {
+            stream: StreamConfig { deadline: Some(Duration::ZERO), ..StreamConfig::default() },
+            ..Config::default()
+        };
         let mut engine = engine(&backend, size, &config);
         // A GPU may be done before the host has asked, but not every time.
         let late = (0..50).find_map(|_| {
@@ -163,7 +179,11 @@ fn a_frame_that_is_late_in_process_is_given_up() {
     let size = Size::new(320, 240);
     let images: Vec<Image> = (0..2).map(|n| gray(n, size)).collect();
     for (name, backend) in backends() {
-        let config = Config { deadline: Some(Duration::ZERO), warm_start: true, ..Config::default() };
+        let config = Config {
+            stream: StreamConfig { deadline: Some(Duration::ZERO), ..StreamConfig::default() },
+            warm_start: true,
+            ..Config::default()
+        };
         let mut engine = engine(&backend, size, &config);
         for image in images.iter().cycle().take(6) {
             match engine.process(&image.frame().unwrap()) {

@@ -1,8 +1,9 @@
 //! A GPU that goes away. `destroy` is as near to that as a test can come.
 
-use viewsphere::engine::{Backend, Config, Engine, OnLoss};
 use viewsphere::frame::{Image, Size};
 use viewsphere::gpu::Gpu;
+use viewsphere::stream::OnLoss;
+use viewsphere::{Backend, Config, Engine, StreamConfig};
 use viewsphere::{Error, Result};
 
 use super::pictures::{assert_same, flows, gray};
@@ -77,7 +78,10 @@ fn frames_in_flight_tell_of_the_loss() {
 fn after_a_second_loss_the_cpu_goes_on() {
     let Some(gpu) = own() else { return };
     let images = images();
-    let config = Config { on_loss: OnLoss::Cpu, ..Config::default() };
+    let config = Config {
+        stream: StreamConfig { on_loss: OnLoss::Cpu, ..StreamConfig::default() },
+        ..Config::default()
+    };
     let mut engine = Engine::new(Backend::Gpu(gpu), SIZE, &config).unwrap();
     for _ in 0..2 {
         flows(&mut engine, &images);

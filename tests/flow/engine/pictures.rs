@@ -1,7 +1,7 @@
 //! Moving pictures to test with, and both backends.
 
-use viewsphere::engine::{Backend, Config, Engine};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
+use viewsphere::{Backend, Config, Engine};
 
 use crate::need;
 

@@ -1,7 +1,7 @@
 //! A stream's results are those of its pairs.
 
-use viewsphere::engine::{Backend, Config};
 use viewsphere::frame::{FlowField, Frame, Image, PixelFormat, Size};
+use viewsphere::{Backend, Config, StreamConfig};
 
 use super::pictures::{assert_same, backends, bits, engine, flows, gray, picture};
 
@@ -106,7 +106,11 @@ fn frames_in_flight_give_what_frames_in_turn_give() {
     let images: Vec<Image> = (0..7).map(|n| gray(n, size)).collect();
     for (name, backend) in backends() {
         for in_flight in [1, 2, 3, 8] {
-            let config = Config { in_flight, warm_start: true, ..Config::default() };
+            let config = Config {
+                stream: StreamConfig { in_flight, ..StreamConfig::default() },
+                warm_start: true,
+                ..Config::default()
+            };
             let expected = flows(&mut engine(&backend, size, &config), &images);
             let mut engine = engine(&backend, size, &config);
             let mut found = Vec::new();
@@ -132,7 +136,8 @@ fn frames_may_be_waited_for_in_any_order() {
     let size = Size::new(65, 48);
     let images: Vec<Image> = (0..3).map(|n| gray(n, size)).collect();
     for (name, backend) in backends() {
-        let config = Config { in_flight: 3, ..Config::default() };
+        let config =
+            Config { stream: StreamConfig { in_flight: 3, ..StreamConfig::default() }, ..Config::default() };
         let expected = flows(&mut engine(&backend, size, &config), &images);
         let mut engine = engine(&backend, size, &config);
         let tickets: Vec<_> = images.iter().map(|i| engine.submit(&i.frame().unwrap()).unwrap()).collect();

@@ -1,4 +1,4 @@
-//! What an engine tells of itself: counts, latencies and the time of each step.
+//! What a stream tells of itself: counts, latencies and the time of each step.
 
 use std::time::Duration;
 
@@ -22,14 +22,14 @@ pub struct Latency {
     pub max: Duration,
 }
 
-/// What an engine has counted since it was made.
+/// What a stream has counted since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Frames accepted.
     pub submitted: u64,
     /// Frames handed over, first frames included.
     pub done: u64,
-    /// Frames given up: replaced by a newer one, or late in [`process`](super::Engine::process).
+    /// Frames given up: replaced by a newer one, or late in [`process`](super::Stream::process).
     pub dropped: u64,
     /// Times that a deadline passed.
     pub timeouts: u64,
@@ -37,7 +37,7 @@ pub struct Stats {
     pub losses: u64,
     /// Times that it was brought back.
     pub rebuilt: u64,
-    /// Whether the engine computes on the CPU, from the beginning or since a loss.
+    /// Whether the stream computes on the CPU, from the beginning or since a loss.
     pub on_cpu: bool,
 }
 

@@ -1,15 +1,15 @@
 //! What happens when the GPU is lost: the stream begins anew on a new device, once, and then on the CPU or not at all.
 
-use super::cpu::CpuStream;
-use super::gpu::GpuStream;
-use super::stream::Stream;
-use super::{Config, Engine, OnLoss};
+use super::gpu::GpuWorker;
+use super::worker::Worker;
+use super::{OnLoss, Stream, StreamConfig};
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 
-impl Engine {
+impl<P> Stream<P> {
     /// Passes a result on. If it tells of a loss, the stream is brought back first.
     pub(super) fn recovered<T>(&mut self, result: Result<T>) -> Result<T> {
-        if let (Err(Error::DeviceLost { adapter, reason }), true) = (&result, self.stream.is_gpu()) {
+        if let (Err(Error::DeviceLost { adapter, reason }), true) = (&result, self.worker.is_gpu()) {
             self.recover(adapter.clone(), reason.clone());
         }
         result
@@ -19,7 +19,7 @@ impl Engine {
         self.stats.losses += 1;
         for flight in self.flights.list.iter().filter(|flight| !flight.given_up) {
             // Only the newest are remembered: the list must not grow.
-            if self.lost.len() == Config::MAX_IN_FLIGHT {
+            if self.lost.len() == StreamConfig::MAX_IN_FLIGHT {
                 self.lost.pop_front();
             }
             self.lost.push_back(flight.frame);
@@ -27,22 +27,25 @@ impl Engine {
         self.flights.clear();
         self.last = None;
         self.why = reason.clone();
-        let rebuilt = match &self.stream {
-            Stream::Gpu(old) if self.stats.rebuilt == 0 => {
-                old.gpu.reopen().and_then(|gpu| GpuStream::new(&gpu, &self.plan, &self.config)).ok()
+        let rebuilt = match &self.worker {
+            Worker::Gpu(old) if self.stats.rebuilt == 0 => {
+                old.gpu.reopen().and_then(|gpu| GpuWorker::new(&gpu, &self.plan, &self.config)).ok()
             }
             _ => None,
         };
-        self.stream = match (rebuilt, self.config.on_loss) {
+        self.worker = match (rebuilt, self.config.on_loss) {
             (Some(gpu), _) => {
                 self.stats.rebuilt += 1;
-                Stream::Gpu(Box::new(gpu))
+                Worker::Gpu(Box::new(gpu))
             }
             (None, OnLoss::Cpu) => {
                 self.stats.on_cpu = true;
-                Stream::Cpu(Box::new(CpuStream::new(&self.plan, &self.config)))
+                match Worker::new(&Backend::Cpu, &self.plan, &self.config) {
+                    Ok(cpu) => cpu,
+                    Err(_) => Worker::Gone { adapter: adapter.clone(), reason },
+                }
             }
-            (None, OnLoss::Fail) => Stream::Gone { adapter: adapter.clone(), reason },
+            (None, OnLoss::Fail) => Worker::Gone { adapter: adapter.clone(), reason },
         };
         self.where_lost = adapter;
     }

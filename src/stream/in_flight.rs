@@ -3,19 +3,21 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use super::slots::{Begin, Job};
+use super::job::Job;
 
 /// A frame in flight.
-pub(super) struct Flight {
+pub(super) struct Flight<P> {
     pub(super) frame: u64,
-    /// Frames of different epochs make no pair.
+    /// Frames of different epochs are not paired.
     pub(super) epoch: u64,
     pub(super) slot: usize,
     pub(super) submitted: Instant,
     /// When [`Error::Timeout`](crate::Error::Timeout) is due.
     pub(super) due: Option<Instant>,
-    /// Whether an initial flow came with it.
-    pub(super) given: bool,
+    /// Whether what came with it replaces what the previous frame has left.
+    pub(super) replaces: bool,
+    /// What the caller keeps with it.
+    pub(super) payload: P,
     pub(super) state: State,
     /// The first frame of the pair; of a frame that still waits, this one.
     pub(super) previous: u64,
@@ -39,18 +41,18 @@ pub(super) struct Last {
     pub(super) frame: u64,
     pub(super) epoch: u64,
     pub(super) parity: usize,
-    /// Whether its flow stands in the buffers.
-    pub(super) pair: bool,
+    /// Whether what it leaves for the next frame stands in the buffers.
+    pub(super) carried: bool,
 }
 
 /// All frames in flight, oldest first, and the slots that are free.
-pub(super) struct Flights {
-    pub(super) list: VecDeque<Flight>,
+pub(super) struct Flights<P> {
+    pub(super) list: VecDeque<Flight<P>>,
     free: Vec<usize>,
     slots: usize,
 }
 
-impl Flights {
+impl<P> Flights<P> {
     pub(super) fn new(slots: usize) -> Self {
         Self { list: VecDeque::with_capacity(slots), free: (0..slots).collect(), slots }
     }
@@ -65,12 +67,17 @@ impl Flights {
         self.free.pop()
     }
 
+    /// Frees a slot that no frame has come to.
+    pub(super) fn put_back(&mut self, slot: usize) {
+        self.free.push(slot);
+    }
+
     pub(super) fn place(&self, frame: u64) -> Option<usize> {
         self.list.iter().position(|flight| flight.frame == frame && !flight.given_up)
     }
 
     /// Takes a frame out and frees its slot.
-    pub(super) fn remove(&mut self, place: usize) -> Option<Flight> {
+    pub(super) fn remove(&mut self, place: usize) -> Option<Flight<P>> {
         let flight = self.list.remove(place)?;
         self.free.push(flight.slot);
         Some(flight)
@@ -85,7 +92,7 @@ impl Flights {
     }
 
     /// The oldest frame that waits, if fewer than `limit` are being computed.
-    pub(super) fn startable(&mut self, limit: usize) -> Option<&mut Flight> {
+    pub(super) fn startable(&mut self, limit: usize) -> Option<&mut Flight<P>> {
         let started = self.list.iter().filter(|flight| matches!(flight.state, State::Started(_))).count();
         if started >= limit {
             return None;
@@ -100,16 +107,16 @@ impl Flights {
     }
 }
 
-impl Flight {
-    /// What is to be done of it after this frame.
-    pub(super) fn job(&self, last: Option<Last>, initial_flow: bool, warm_start: bool) -> Job {
-        let first = last.filter(|last| last.epoch == self.epoch);
-        let begin = match first {
-            Some(_) if initial_flow && self.given => Begin::Given,
-            Some(last) if initial_flow && !(warm_start && last.pair) => Begin::Zero,
-            _ => Begin::Kept,
-        };
-        Job { parity: last.map_or(0, |last| 1 - last.parity), pair: first.is_some(), begin }
+impl<P> Flight<P> {
+    /// What is to be computed of it after this frame.
+    pub(super) fn job(&self, last: Option<Last>) -> Job {
+        let previous = last.filter(|last| last.epoch == self.epoch);
+        Job {
+            parity: last.map_or(0, |last| 1 - last.parity),
+            pair: previous.is_some(),
+            carried: previous.is_some_and(|last| last.carried),
+            replaced: self.replaces,
+        }
     }
 }
 

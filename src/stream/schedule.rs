@@ -2,32 +2,32 @@
 
 use std::time::{Duration, Instant};
 
-use super::flight::{self, Flight, Last, State};
-use super::slots::Begin;
-use super::{Engine, Extras, Output, Ticket};
+use super::in_flight::{self, Flight, Last, State};
+use super::{Done, Stream, Ticket};
 use crate::error::{Error, Result};
-use crate::frame::Frame;
+use crate::plan::Given;
 
-/// A frame that was done, its results still in its slot.
-pub(super) struct Taken {
+/// A frame that is done, its outputs still in its slot.
+pub(super) struct Taken<P> {
     frame: u64,
+    payload: P,
     previous: u64,
     slot: usize,
     pair: bool,
     latency: Duration,
 }
 
-impl Engine {
+impl<P> Stream<P> {
     /// Frames that may be computed at once. Where the oldest may be dropped, one is kept back to be dropped.
     fn room(&self) -> usize {
-        match self.stream.is_gpu() {
+        match self.worker.is_gpu() {
             true => self.config.in_flight - usize::from(self.config.drop_oldest),
             false => 1,
         }
     }
 
-    pub(super) fn enqueue(&mut self, frame: &Frame<'_>, extras: &Extras<'_>) -> Result<Ticket> {
-        self.stream.check()?;
+    pub(super) fn enqueue(&mut self, given: &[Given<'_>], payload: P) -> Result<Ticket> {
+        self.worker.check()?;
         self.refresh()?;
         let slot = match self.flights.free() {
             Some(slot) => slot,
@@ -36,21 +36,28 @@ impl Engine {
                 self.flights.free().ok_or_else(|| self.busy())?
             }
         };
-        self.stream.fill(slot, frame, extras)?;
+        let replaces = match self.worker.fill(&self.plan, slot, given) {
+            Ok(replaces) => replaces,
+            Err(error) => {
+                self.flights.put_back(slot);
+                return Err(error);
+            }
+        };
         let submitted = Instant::now();
         self.flights.list.push_back(Flight {
             frame: self.next,
             epoch: self.epoch,
             slot,
             submitted,
-            due: flight::due(submitted, self.config.deadline),
-            given: extras.initial_flow.is_some(),
+            due: in_flight::due(submitted, self.config.deadline),
+            replaces,
+            payload,
             state: State::Waiting,
             previous: self.next,
             before: None,
             given_up: false,
         });
-        let ticket = Ticket { engine: self.id, frame: self.next };
+        let ticket = Ticket { stream: self.id, frame: self.next };
         self.next += 1;
         self.refresh()?;
         self.stats.submitted += 1;
@@ -67,7 +74,7 @@ impl Engine {
             return Err(self.busy());
         };
         if let State::Done(_) = flight.state {
-            self.stream.release(flight.slot);
+            self.worker.release(flight.slot);
         }
         self.stats.dropped += 1;
         Ok(())
@@ -75,11 +82,11 @@ impl Engine {
 
     /// On the GPU, sees what is done and starts what waits. On the CPU both is for those who wait.
     fn refresh(&mut self) -> Result<()> {
-        if !self.stream.is_gpu() {
+        if !self.worker.is_gpu() {
             return Ok(());
         }
         while let Some((place, slot, job)) = self.flights.started() {
-            if !self.stream.advance(&self.plan, slot, job, Some(Instant::now()))? {
+            if !self.worker.advance(&self.plan, slot, job, Some(Instant::now()))? {
                 break;
             }
             self.mark_done(place);
@@ -93,7 +100,7 @@ impl Engine {
             flight.state = State::Done(job);
         }
         if flight.given_up {
-            self.stream.release(flight.slot);
+            self.worker.release(flight.slot);
             self.flights.remove(place);
         }
     }
@@ -101,24 +108,24 @@ impl Engine {
     fn start_waiting(&mut self) -> Result<()> {
         let room = self.room();
         while let Some(flight) = self.flights.startable(room) {
-            let job = flight.job(self.last, self.plan.initial_flow, self.config.warm_start);
-            self.stream.start(&self.plan, flight.slot, job)?;
+            let job = flight.job(self.last);
+            self.worker.start(&self.plan, flight.slot, job)?;
             flight.state = State::Started(job);
             flight.before = self.last;
             flight.previous = self.last.map_or(flight.frame, |last| last.frame);
             let (frame, epoch) = (flight.frame, flight.epoch);
-            self.last = Some(Last { frame, epoch, parity: job.parity, pair: job.pair });
+            self.last = Some(Last { frame, epoch, parity: job.parity, carried: job.pair });
         }
         Ok(())
     }
 
     /// Checks that a ticket is of a frame in flight.
     pub(super) fn find(&self, ticket: Ticket) -> Result<()> {
-        if ticket.engine == self.id && self.flights.place(ticket.frame).is_some() {
+        if ticket.stream == self.id && self.flights.place(ticket.frame).is_some() {
             return Ok(());
         }
-        let lost = self.lost_frame(ticket.frame).filter(|_| ticket.engine == self.id);
-        self.stream.check()?;
+        let lost = self.lost_frame(ticket.frame).filter(|_| ticket.stream == self.id);
+        self.worker.check()?;
         Err(lost.unwrap_or(Error::Ticket { ticket: ticket.frame }))
     }
 
@@ -129,10 +136,10 @@ impl Engine {
             if !wait {
                 self.refresh()?;
             }
-            let done = |flight: &Flight| flight.frame == frame && matches!(flight.state, State::Done(_));
+            let done = |flight: &Flight<P>| flight.frame == frame && matches!(flight.state, State::Done(_));
             let done = self.flights.list.iter().any(done);
             // On the CPU the next frame can wait, and be dropped.
-            if !done || self.stream.is_gpu() {
+            if !done || self.worker.is_gpu() {
                 self.start_waiting()?;
             }
             if done {
@@ -141,10 +148,10 @@ impl Engine {
             let Some((place, slot, job)) = self.flights.started() else {
                 return Ok(false);
             };
-            if !wait && self.stream.is_gpu() {
+            if !wait && self.worker.is_gpu() {
                 return Ok(false);
             }
-            if self.stream.advance(&self.plan, slot, job, until)? {
+            if self.worker.advance(&self.plan, slot, job, until)? {
                 self.mark_done(place);
             } else if until.is_some_and(|until| Instant::now() >= until) {
                 return Ok(false);
@@ -152,9 +159,9 @@ impl Engine {
         }
     }
 
-    pub(super) fn take(&mut self, ticket: Ticket) -> Result<Taken> {
+    pub(super) fn take(&mut self, ticket: Ticket) -> Result<Taken<P>> {
         let found = self.find(ticket);
-        self.lost.retain(|frame| *frame != ticket.frame || ticket.engine != self.id);
+        self.lost.retain(|frame| *frame != ticket.frame || ticket.stream != self.id);
         found?;
         let due = self.flights.place(ticket.frame).and_then(|place| self.flights.list[place].due);
         let done = self.bring(ticket.frame, true, due);
@@ -165,28 +172,31 @@ impl Engine {
         taken
     }
 
-    fn hand_over(&mut self, ticket: Ticket) -> Result<Taken> {
+    fn hand_over(&mut self, ticket: Ticket) -> Result<Taken<P>> {
         let gone = Error::Ticket { ticket: ticket.frame };
         let Some(place) = self.flights.place(ticket.frame) else { return Err(gone) };
         let flight = &mut self.flights.list[place];
         let waited = flight.submitted.elapsed();
         let State::Done(job) = flight.state else {
-            flight.due = flight::due(Instant::now(), self.config.deadline);
+            flight.due = in_flight::due(Instant::now(), self.config.deadline);
             return Err(self.late(ticket.frame, waited));
         };
-        self.stream.take(&self.plan, flight.slot, job)?;
-        let (slot, previous, submitted) = (flight.slot, flight.previous, flight.submitted);
-        self.flights.remove(place);
+        self.worker.take(&self.plan, flight.slot, job)?;
+        let Some(flight) = self.flights.remove(place) else { return Err(gone) };
+        let Flight { slot, previous, submitted, payload, .. } = flight;
         self.stats.done += 1;
         let latency = submitted.elapsed();
         if job.pair {
             self.window.add(latency);
         }
-        Ok(Taken { frame: ticket.frame, previous, slot, pair: job.pair, latency })
+        Ok(Taken { frame: ticket.frame, payload, previous, slot, pair: job.pair, latency })
     }
 
-    /// Waits for a frame without taking it. One that is late is given up.
-    pub(crate) fn finish(&mut self, ticket: Ticket) -> Result<()> {
+    /// Waits for a frame without taking it. One that is late is given up and counted as dropped.
+    ///
+    /// # Errors
+    /// As [`Stream::wait`].
+    pub fn finish(&mut self, ticket: Ticket) -> Result<()> {
         self.find(ticket)?;
         let flight = self.flights.place(ticket.frame).map(|place| &self.flights.list[place]);
         let (due, submitted) = flight.map_or((None, Instant::now()), |flight| (flight.due, flight.submitted));
@@ -211,27 +221,20 @@ impl Engine {
         self.stats.dropped += 1;
         let flight = &mut self.flights.list[place];
         if let State::Started(job) = flight.state {
-            if self.stream.is_gpu() {
+            if self.worker.is_gpu() {
                 // It cannot be called back. It stays a part of the stream, and its slot is free when it is done.
                 flight.given_up = true;
                 return;
             }
-            // The next frame takes the same parity. An initial flow has overwritten that of the pair before.
-            self.last =
-                flight.before.map(|last| Last { pair: last.pair && job.begin == Begin::Kept, ..last });
+            // The next frame takes the same parity. What the host has given may have replaced what it would find there.
+            self.last = flight.before.map(|last| Last { carried: last.carried && !job.replaced, ..last });
         }
         self.flights.remove(place);
     }
 
-    pub(super) fn output(&self, taken: &Taken) -> Option<Output<'_>> {
-        let results = self.stream.results(taken.slot).filter(|_| taken.pair)?;
-        Some(Output {
-            frame: taken.frame,
-            previous: taken.previous,
-            flow: (self.layout.flow > 0).then_some(&results.flow),
-            confidence: (self.layout.confidence > 0).then_some(&results.confidence),
-            fields: &results.fields,
-            latency: taken.latency,
-        })
+    pub(super) fn handed(&self, taken: Taken<P>) -> Done<'_, P> {
+        let Taken { frame, payload, previous, slot, pair, latency } = taken;
+        let outputs = self.worker.outputs(slot).filter(|_| pair);
+        Done { frame, payload, previous: pair.then_some(previous), outputs, latency }
     }
 }

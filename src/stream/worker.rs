@@ -2,22 +2,21 @@
 
 use std::time::{Duration, Instant};
 
-use super::cpu::CpuStream;
-use super::figures::StageTime;
-use super::gpu::GpuStream;
-use super::slots::{Job, Results};
-use super::{Extras, TimeSource};
+use super::cpu::CpuWorker;
+use super::gpu::GpuWorker;
+use super::job::Job;
+use super::{StageTime, StreamConfig, TimeSource};
+use crate::backend::Backend;
 use crate::error::{Error, Result};
-use crate::frame::Frame;
-use crate::plan::Plan;
+use crate::plan::{Given, Outputs, Plan};
 
 /// How long the GPU is waited for at once, so that a loss does not go unnoticed.
 const SLICE: Duration = Duration::from_millis(100);
 
 /// What computes the frames.
-pub(super) enum Stream {
-    Gpu(Box<GpuStream>),
-    Cpu(Box<CpuStream>),
+pub(super) enum Worker {
+    Gpu(Box<GpuWorker>),
+    Cpu(Box<CpuWorker>),
     /// The GPU is lost for good.
     Gone {
         adapter: String,
@@ -25,7 +24,14 @@ pub(super) enum Stream {
     },
 }
 
-impl Stream {
+impl Worker {
+    pub(super) fn new(backend: &Backend, plan: &Plan, config: &StreamConfig) -> Result<Self> {
+        Ok(match backend {
+            Backend::Gpu(gpu) => Self::Gpu(Box::new(GpuWorker::new(gpu, plan, config)?)),
+            Backend::Cpu => Self::Cpu(Box::new(CpuWorker::new(plan, config))),
+        })
+    }
+
     pub(super) fn is_gpu(&self) -> bool {
         matches!(self, Self::Gpu(_))
     }
@@ -42,15 +48,20 @@ impl Stream {
         }
     }
 
-    pub(super) fn fill(&mut self, slot: usize, frame: &Frame<'_>, extras: &Extras<'_>) -> Result<()> {
-        match self {
-            Self::Gpu(gpu) => gpu.fill(slot, frame, extras),
-            Self::Cpu(cpu) => {
-                cpu.fill(slot, frame, extras);
-                Ok(())
+    /// Copies what comes with a frame. Returns whether it replaces what the previous frame has left.
+    pub(super) fn fill(&mut self, plan: &Plan, slot: usize, given: &[Given<'_>]) -> Result<bool> {
+        let layout = match self {
+            Self::Gpu(gpu) => {
+                gpu.fill(plan, slot, given)?;
+                gpu.layout()
             }
-            Self::Gone { adapter, reason } => Self::gone(adapter, reason),
-        }
+            Self::Cpu(cpu) => {
+                cpu.fill(plan, slot, given);
+                cpu.layout()
+            }
+            Self::Gone { adapter, reason } => return Self::gone(adapter, reason),
+        };
+        Ok(layout.replaces_carried(plan, given))
     }
 
     pub(super) fn start(&mut self, plan: &Plan, slot: usize, job: Job) -> Result<()> {
@@ -83,7 +94,7 @@ impl Stream {
         }
     }
 
-    /// Brings the results of a frame that is done to where [`Stream::results`] finds them.
+    /// Brings the results of a frame that is done to where [`Worker::outputs`] finds them.
     pub(super) fn take(&mut self, plan: &Plan, slot: usize, job: Job) -> Result<()> {
         match self {
             Self::Gpu(gpu) => gpu.take(plan, slot, job),
@@ -99,11 +110,11 @@ impl Stream {
         }
     }
 
-    /// The results that were taken last from this slot.
-    pub(super) fn results(&self, slot: usize) -> Option<&Results> {
+    /// The outputs that were taken last from this slot.
+    pub(super) fn outputs(&self, slot: usize) -> Option<&Outputs> {
         match self {
-            Self::Gpu(gpu) => Some(gpu.results()),
-            Self::Cpu(cpu) => Some(cpu.results(slot)),
+            Self::Gpu(gpu) => Some(gpu.outputs()),
+            Self::Cpu(cpu) => Some(cpu.outputs(slot)),
             Self::Gone { .. } => None,
         }
     }
@@ -111,7 +122,7 @@ impl Stream {
     pub(super) fn adapter(&self) -> String {
         match self {
             Self::Gpu(gpu) => gpu.gpu.adapter().to_string(),
-            Self::Cpu(_) => CpuStream::threads(),
+            Self::Cpu(_) => CpuWorker::threads(),
             Self::Gone { adapter, .. } => adapter.clone(),
         }
     }

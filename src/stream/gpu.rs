@@ -1,43 +1,41 @@
-//! The stream on the GPU: rings of mapped buffers, one submission a frame.
+//! The stream on the GPU: rings of mapped buffers, one submission per frame.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 use wgpu::{BufferUsages, CommandEncoderDescriptor, MapMode, PollType};
 
+use super::StreamConfig;
 use super::clock::Clock;
-use super::layout::{self, Layout};
-use super::ring::{Slot, guarded};
-use super::slots::{Begin, Job, Results};
-use super::{Config, Extras};
+use super::job::Job;
+use super::layout::{Holdings, Layout, Write};
+use super::ring::Slot;
 use crate::error::Result;
-use crate::frame::Frame;
 use crate::gpu::{Gpu, GpuExecutor};
-use crate::plan::Plan;
+use crate::plan::{Given, Outputs, Plan};
 
 /// A plan on the GPU, and its frames in flight.
-pub(super) struct GpuStream {
+pub(super) struct GpuWorker {
     pub(super) gpu: Gpu,
     exec: GpuExecutor,
     layout: Layout,
+    holdings: Holdings,
     slots: Vec<Slot>,
-    results: Results,
+    outputs: Outputs,
     pub(super) clock: Option<Clock>,
-    /// Whether the device's certainty is one everywhere already.
-    trusted: bool,
 }
 
-impl GpuStream {
-    pub(super) fn new(gpu: &Gpu, plan: &Plan, config: &Config) -> Result<Self> {
-        let layout = Layout::new(plan, config);
-        guarded(gpu, plan, || {
+impl GpuWorker {
+    pub(super) fn new(gpu: &Gpu, plan: &Plan, config: &StreamConfig) -> Result<Self> {
+        let layout = Layout::new(plan);
+        gpu.guarded(plan, || {
             let exec = GpuExecutor::new(gpu, plan)?;
             let clock = if config.timestamps { Clock::new(gpu, plan) } else { None };
             let ticks = clock.as_ref().map_or(0, Clock::bytes);
             let slots =
-                (0..config.in_flight).map(|_| Slot::new(gpu, &layout, ticks)).collect::<Result<_>>()?;
-            let results = Results::new(&layout, plan);
-            Ok(Self { gpu: gpu.clone(), exec, layout, slots, results, clock, trusted: false })
+                (0..config.in_flight).map(|_| Slot::new(gpu, plan, &layout, ticks)).collect::<Result<_>>()?;
+            let (holdings, outputs) = (Holdings::new(plan), Outputs::new(&plan.outputs));
+            Ok(Self { gpu: gpu.clone(), exec, layout, holdings, slots, outputs, clock })
         })
     }
 
@@ -46,12 +44,16 @@ impl GpuStream {
         self.slots.iter().map(Slot::bytes).sum::<u64>() + self.clock.as_ref().map_or(0, Clock::bytes)
     }
 
-    /// Copies a frame into its slot.
+    pub(super) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Copies what comes with a frame into its slot.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
-    pub(super) fn fill(&mut self, slot: usize, frame: &Frame<'_>, extras: &Extras<'_>) -> Result<()> {
-        self.slots[slot].fill(&self.gpu, &self.layout, frame, extras)
+    pub(super) fn fill(&mut self, plan: &Plan, slot: usize, given: &[Given<'_>]) -> Result<()> {
+        self.slots[slot].fill(&self.gpu, plan, &self.layout, given)
     }
 
     /// Submits a frame that was copied.
@@ -65,31 +67,26 @@ impl GpuStream {
     }
 
     fn submit(&mut self, plan: &Plan, slot: usize, job: Job) {
-        let Self { gpu, exec, layout, slots, clock, trusted, .. } = self;
-        let Slot { upload, readback, submission, has_certainty, mapped, .. } = &mut slots[slot];
+        let Self { gpu, exec, layout, holdings, slots, clock, .. } = self;
+        let Slot { upload, readback, submission, given, mapped, .. } = &mut slots[slot];
         let mut encoder = gpu.device.create_command_encoder(&CommandEncoderDescriptor::default());
         upload.unmap();
         let bytes = |values: usize| 4 * values as u64;
-        encoder.copy_buffer_to_buffer(upload, 0, exec.buf(plan.frame), 0, bytes(layout.frame));
-        if let Some(certainty) = plan.certainty
-            && (*has_certainty || !*trusted)
-        {
-            let (to, len) = (exec.buf(certainty), bytes(layout.certainty));
-            encoder.copy_buffer_to_buffer(upload, bytes(layout.frame), to, 0, len);
-            *trusted = !*has_certainty;
+        if job.clears() {
+            plan.carried.iter().for_each(|bufs| encoder.clear_buffer(exec.buf(bufs[job.parity]), 0, None));
         }
-        let initial = exec.buf(plan.flow[1 - job.parity]);
-        match job.begin {
-            Begin::Kept => {}
-            Begin::Zero => encoder.clear_buffer(initial, 0, None),
-            Begin::Given => {
-                let at = bytes(layout.frame + layout.certainty);
-                encoder.copy_buffer_to_buffer(upload, at, initial, 0, bytes(layout.initial));
-            }
-        }
-        if let Some(motion) = plan.motion {
-            let at = bytes(layout.upload() - layout.motion);
-            encoder.copy_buffer_to_buffer(upload, at, exec.buf(motion), 0, bytes(layout.motion));
+        for (i, (port, input)) in plan.inputs.iter().zip(&layout.inputs).enumerate() {
+            let (to, at) = (exec.buf(port.bufs[job.parity]), bytes(input.place.start));
+            let len = match holdings.write(i, port, input, job.parity, given[i].is_some()) {
+                Write::Nothing => continue,
+                Write::Zeros => {
+                    encoder.clear_buffer(to, 0, None);
+                    continue;
+                }
+                Write::Fill => input.place.len(),
+                Write::Given => given[i].unwrap_or_default(),
+            };
+            encoder.copy_buffer_to_buffer(upload, at, to, 0, bytes(len));
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -99,18 +96,9 @@ impl GpuStream {
         // Of a first frame only the clock is read.
         *mapped = clock.is_some() || (job.pair && layout.readback() > 0);
         if let Some(readback) = readback.as_ref().filter(|_| *mapped) {
-            if job.pair && layout.flow > 0 {
-                let flow = exec.buf(plan.flow[job.parity]);
-                encoder.copy_buffer_to_buffer(flow, 0, readback, 0, bytes(layout.flow));
-            }
-            if let Some(confidence) = plan.confidence.filter(|_| job.pair && layout.confidence > 0) {
-                let (from, len) = (exec.buf(confidence), bytes(layout.confidence));
-                encoder.copy_buffer_to_buffer(from, 0, readback, bytes(layout.flow), len);
-            }
-            let mut at = layout.flow + layout.confidence;
-            for (field, shape) in plan.fields.iter().filter(|_| job.pair) {
-                encoder.copy_buffer_to_buffer(exec.buf(*field), 0, readback, bytes(at), bytes(shape.len()));
-                at += shape.len();
+            for (port, place) in plan.outputs.iter().zip(&layout.outputs).filter(|_| job.pair) {
+                let from = exec.buf(port.bufs[job.parity]);
+                encoder.copy_buffer_to_buffer(from, 0, readback, bytes(place.start), bytes(place.len()));
             }
             if let Some(clock) = clock {
                 clock.copy(&mut encoder, job.steps(plan), readback, layout);
@@ -138,20 +126,14 @@ impl GpuStream {
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
     pub(super) fn take(&mut self, plan: &Plan, slot: usize, job: Job) -> Result<()> {
-        let Self { gpu, layout, slots, results, clock, .. } = self;
+        let Self { gpu, layout, slots, outputs, clock, .. } = self;
         let slot = &mut slots[slot];
         if let Some(readback) = slot.readback.as_ref().filter(|_| slot.mapped) {
             let view = readback.get_mapped_range(..).map_err(|error| gpu.lost_error(error.to_string()))?;
             if job.pair {
                 let values: &[f32] = bytemuck::cast_slice(&view[..4 * layout.readback()]);
-                let (flow, rest) = values.split_at(layout.flow);
-                let (confidence, mut fields) = rest.split_at(layout.confidence);
-                layout::unpack_flow(flow, layout.flow_size, &mut results.flow.data);
-                layout::unpack_plane(confidence, layout.flow_size, &mut results.confidence.data);
-                for field in &mut results.fields {
-                    let values;
-                    (values, fields) = fields.split_at(field.len());
-                    field.copy_from_slice(values);
+                for (i, place) in layout.outputs.iter().enumerate() {
+                    outputs.unpack(i, &values[place.clone()]);
                 }
             }
             if let Some(clock) = clock {
@@ -167,8 +149,8 @@ impl GpuStream {
         self.slots[slot].release();
     }
 
-    pub(super) fn results(&self) -> &Results {
-        &self.results
+    pub(super) fn outputs(&self) -> &Outputs {
+        &self.outputs
     }
 }
 

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, QuerySet};
 
-use super::figures::Stages;
 use super::layout::Layout;
+use super::stats::Stages;
 use crate::gpu::Gpu;
 use crate::plan::Plan;
 

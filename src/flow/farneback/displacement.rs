@@ -2,15 +2,15 @@
 
 use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Outside, Update, Window};
-use crate::flow::levels::Level;
+use crate::flow::{Level, Wanted};
 use crate::kernels::{
     advance, area, certain_matrices, confidence, matrices, residual, solve, tables, upsample, window_y,
 };
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers of this part of the plan.
-pub(super) struct Motion {
-    levels: Vec<MotionLevel>,
+pub(super) struct Displacement {
+    levels: Vec<FlowLevel>,
     pyr_scale: f64,
     iterations: u32,
     radius: u32,
@@ -25,7 +25,7 @@ pub(super) struct Motion {
 }
 
 /// One level's flow and how the coarser level's is read.
-struct MotionLevel {
+struct FlowLevel {
     level: Level,
     /// The finest level's flow is the plan's.
     flow: Option<BufId>,
@@ -49,11 +49,11 @@ enum Start {
     Given([BufId; 2]),
 }
 
-impl Motion {
-    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level]) -> Self {
+impl Displacement {
+    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level], wanted: Wanted) -> Self {
         let finest = levels[0].size;
         let coarsest = levels[levels.len() - 1].size;
-        let start = if config.initial_flow {
+        let start = if wanted.initial_flow {
             Start::Given([
                 bufs.constant("columns of the given flow", tables::cover(finest.width, coarsest.width)),
                 bufs.constant("rows of the given flow", tables::cover(finest.height, coarsest.height)),
@@ -61,7 +61,7 @@ impl Motion {
         } else {
             Start::Zero(bufs.constant("no motion", vec![0.0; Shape::planar(coarsest, 2).len()]))
         };
-        let motion_level = |(k, &level): (usize, &Level)| MotionLevel {
+        let flow_level = |(k, &level): (usize, &Level)| FlowLevel {
             level,
             flow: (k > 0).then(|| bufs.computed(format!("flow, level {k}"), Shape::planar(level.size, 2))),
             other: (config.update == Update::Increment)
@@ -82,7 +82,7 @@ impl Motion {
         let window = tables::window(config.winsize, config.window == Window::Gaussian);
         let radius = window.len() / 2;
         Self {
-            levels: levels.iter().enumerate().map(motion_level).collect(),
+            levels: levels.iter().enumerate().map(flow_level).collect(),
             pyr_scale: config.pyr_scale,
             iterations: config.iterations,
             radius: radius as u32,
@@ -92,8 +92,8 @@ impl Motion {
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
             start,
-            trust: config.confidence.then(|| Trust {
-                certainty: (!config.certainty)
+            trust: wanted.confidence.then(|| Trust {
+                certainty: (!wanted.certainty)
                     .then(|| bufs.constant("equal certainty", vec![1.0; Shape::planar(finest, 1).len()])),
                 confidence: bufs.computed("confidence", Shape::planar(finest, 1)),
             }),
@@ -144,7 +144,7 @@ impl Motion {
     }
 
     /// The coarser level's flow as a beginning.
-    fn refine(&self, k: usize, level: &MotionLevel, coarse: BufId, of: Level, flow: BufId) -> Step {
+    fn refine(&self, k: usize, level: &FlowLevel, coarse: BufId, of: Level, flow: BufId) -> Step {
         let size = level.level.size;
         let [place_x, place_y] = level.place.unwrap_or_else(|| unreachable!("a coarser level was computed"));
         Step::new(
@@ -163,7 +163,7 @@ impl Motion {
     }
 
     /// A given flow as a beginning.
-    fn reduce(&self, k: usize, level: &MotionLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
+    fn reduce(&self, k: usize, level: &FlowLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
         let (size, finest) = (level.level.size, self.levels[0].level.size);
         Step::new(
             &area::KERNEL,
@@ -184,7 +184,7 @@ impl Motion {
         &self,
         steps: &mut Vec<Step>,
         label: String,
-        level: &MotionLevel,
+        level: &FlowLevel,
         [first, second]: [Expansion; 2],
         [so_far, flow]: [BufId; 2],
     ) {
