@@ -3,8 +3,9 @@
 //! One frame is computed while the next one is read from the disk.
 
 use viewsphere::engine::{Backend, Config, Engine, Ticket};
-use viewsphere::frame::{FlowField, Frames, Image};
+use viewsphere::frame::{FlowField, Image};
 use viewsphere::gpu::{Gpu, GpuOptions};
+use viewsphere::io::Frames;
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -38,18 +38,28 @@ pub mod flow;
 pub mod frame;
 pub mod gpu;
 pub mod imu;
+#[cfg(feature = "io")]
+pub mod io;
 pub mod kernel;
 pub mod kernels;
+pub mod live;
 pub mod pipeline;
 pub mod plan;
+mod raster;
+#[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "sim")]
 pub mod sim;
 pub mod sphere;
 pub mod steer;
+#[cfg(any(feature = "report", all(feature = "sim", feature = "io")))]
+mod text;
+#[cfg(feature = "serde")]
+pub mod wire;
 
 /// The vectors and matrices of this crate's interface.
 pub use glam;
 
 pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
 pub use error::{Error, Result};
-pub use pipeline::{Cue, Pipeline, PipelineConfig};
+pub use pipeline::{Cue, OwnedCue, Pipeline, PipelineConfig};

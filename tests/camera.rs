@@ -11,7 +11,8 @@ use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, Lens, world_from_body};
-use viewsphere::frame::{PixelFormat, Size, picture};
+use viewsphere::frame::{PixelFormat, Size};
+use viewsphere::io::picture;
 use viewsphere::kernels::{lens_map, remap};
 
 /// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the picture,
@@ -169,11 +170,12 @@ fn the_undistorted_picture_is_that_of_opencv() {
 #[test]
 fn files_that_tools_have_written_are_read() {
     let Some(folder) = common::data("") else { return };
-    let camera = viewsphere::camera::read(folder.join("opencv_chessboard/left_intrinsics.yml")).unwrap();
+    let camera = viewsphere::io::camera::read(folder.join("opencv_chessboard/left_intrinsics.yml")).unwrap();
     assert_eq!((camera.size, camera.f_u), (Size::new(640, 480), 535.915733961632));
     assert_eq!(camera.lens.coefficients[4], 0.23839153080878486);
     for (name, f_u) in [("cam0", 458.654), ("cam1", 457.587)] {
-        let camera = viewsphere::camera::read(folder.join(format!("euroc_v101/{name}_sensor.yaml"))).unwrap();
+        let camera =
+            viewsphere::io::camera::read(folder.join(format!("euroc_v101/{name}_sensor.yaml"))).unwrap();
         assert_eq!((camera.size, camera.f_u), (Size::new(752, 480), f_u));
     }
 }

@@ -11,7 +11,8 @@ use common::feed::feed;
 use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::eval::Scene;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Size, Y4mWriter, flo, npy, picture, read_flow};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
+use viewsphere::io::{Y4mWriter, flo, npy, picture, read_flow};
 
 const SIZE: Size = Size::new(72, 50);
 

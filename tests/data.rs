@@ -12,7 +12,8 @@ use std::path::Path;
 use common::pair::{On, flow};
 use viewsphere::eval::flow_error;
 use viewsphere::flow::{Farneback, Window};
-use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, flo, picture};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane};
+use viewsphere::io::{flo, picture};
 
 /// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a
 /// unit, is what our fields' distance from OpenCV's may add.

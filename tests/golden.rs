@@ -8,7 +8,8 @@ use std::path::Path;
 use common::pair::{On, flow};
 use viewsphere::eval::endpoint_error;
 use viewsphere::flow::{Farneback, Window};
-use viewsphere::frame::{FlowField, Image, flo, picture};
+use viewsphere::frame::{FlowField, Image};
+use viewsphere::io::{flo, picture};
 use viewsphere::kernel::Bound;
 use viewsphere::kernels::compare::{Difference, compare};
 

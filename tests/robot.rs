@@ -5,7 +5,8 @@ mod common;
 use common::flight::quantile;
 use viewsphere::camera::{Camera, Lens};
 use viewsphere::flow::Farneback;
-use viewsphere::frame::{Size, picture};
+use viewsphere::frame::Size;
+use viewsphere::io::picture;
 use viewsphere::sphere::{Fields, Sphere};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 

@@ -10,9 +10,11 @@ use std::process::Command;
 use common::feed::feed;
 use serde_json::Value;
 use tempfile::TempDir;
-use viewsphere::camera::{self, Camera, Format, Lens};
+use viewsphere::camera::{Camera, Lens};
 use viewsphere::eval::Scene;
-use viewsphere::frame::{Image, PixelFormat, Size, Y4mReader, Y4mWriter, picture};
+use viewsphere::frame::{Image, PixelFormat, Size};
+use viewsphere::io::camera::{self, Format};
+use viewsphere::io::{Y4mReader, Y4mWriter, picture};
 
 const SIZE: Size = Size::new(96, 72);
 const FRAMES: u32 = 8;

@@ -9,7 +9,7 @@ use std::time::Instant;
 use glam::{DMat3, DVec3};
 
 pub use config::PipelineConfig;
-pub use cue::{Cue, Invalid};
+pub use cue::{Cue, Invalid, InvalidKind, OwnedCue};
 
 use crate::camera::Camera;
 use crate::engine::{Backend, Engine, Extras, Ticket};

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 pub(crate) mod feed;
+#[cfg(feature = "sim")]
 pub(crate) mod flight;
 pub(crate) mod pair;
 pub(crate) mod sample;
