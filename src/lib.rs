@@ -26,6 +26,20 @@
 //!
 //! With [`Backend::Gpu`] the same frames go through WGSL kernels on any GPU that `wgpu` reaches; a stated bound holds
 //! between the two (see [`kernels`] and `viewsphere crosscheck`). The layers are described in `ARCHITECTURE.md`.
+//!
+//! # Cargo features
+//!
+//! Without any feature the crate holds what runs on board: [`frame`]s, [`camera`]s, the [`imu`], the [`engine`], the
+//! [`pipeline`] from frames and a gyro to cues, [`live`] intake and [`steer`]ing. `default-features = false` gives just that.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `io` | the module `io`: files of pictures, videos, flow fields, cameras and gyro logs |
+//! | `sim` | the module `sim`: simulated worlds, vehicles, flights and campaigns; with `io`, data sets of them |
+//! | `report` | the module `report`: flow in colours and arrows, overlays and pages; with `sim`, those of flights |
+//! | `serde` | the module `wire`: cues as JSON; with `sim` and `io`, files of worlds and of campaigns |
+//! | `cli` (default) | the command line, with all of these |
+//! | `metal`, `dx12`, `gles` | wgpu's other back ends; Vulkan is always there |
 
 pub mod camera;
 #[cfg(feature = "cli")]

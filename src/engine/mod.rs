@@ -25,6 +25,7 @@ use std::time::Duration;
 
 pub use config::{Backend, Config, Extras, OnLoss};
 pub use figures::{Latency, StageTime, Stats, TimeSource};
+#[cfg(feature = "sim")]
 pub(crate) use ring::guarded;
 
 use crate::error::{Error, Result};
