@@ -135,8 +135,8 @@ impl Simulate {
         input::not_standard_output(&self.output)?;
         let existing = if self.force { Existing::Replace } else { Existing::Refuse };
         let writer = DataSetWriter::new(&self.output, existing, &course, &camera, &config).map_err(named)?;
-        let bar = if self.quiet { ProgressBar::hidden() } else { progress(writer.frames()) };
         let backend = self.backend.open_unless(self.quiet)?;
+        let bar = if self.quiet { ProgressBar::hidden() } else { progress(writer.frames()) };
         let written = writer.write(backend, |frames| bar.set_position(frames as u64));
         bar.finish_and_clear();
         self.say(&course.name, &config, &written.map_err(named)?)?;

@@ -38,7 +38,7 @@ pub(super) fn write(
         seed = course.seed,
         version = env!("CARGO_PKG_VERSION"),
         command =
-            config.made_by.as_ref().map_or(String::new(), |command| format!(" with\n\n    {command}\n")),
+            config.made_by.as_ref().map_or(String::new(), |command| format!(" with\n\n    {command}")),
         frames = counted(flown.frames.len(), "frame"),
         size = camera.size,
         fps = config.rate_hz,
