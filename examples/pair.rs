@@ -1,7 +1,7 @@
 //! The flow from one picture to another, as a `.flo` file: `pair a.png b.png out.flo`.
 
-use viewsphere::frame::{flo, picture};
 use viewsphere::gpu::{Gpu, GpuOptions};
+use viewsphere::io::{flo, picture};
 use viewsphere::{Backend, Config, Engine};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

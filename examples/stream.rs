@@ -2,8 +2,9 @@
 //!
 //! One frame is computed while the next one is read from the disk.
 
-use viewsphere::frame::{FlowField, Frames, Image};
+use viewsphere::frame::{FlowField, Image};
 use viewsphere::gpu::{Gpu, GpuOptions};
+use viewsphere::io::Frames;
 use viewsphere::stream::Ticket;
 use viewsphere::{Backend, Config, Engine};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::frame::{PixelFormat, Size};
+use crate::raster::{PixelFormat, Size};
 
 /// The result of every fallible call of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -144,6 +144,43 @@ pub enum Error {
 }
 
 impl Error {
+    /// A short name of the kind of error that never changes, for programs that log it or act on it:
+    ///
+    /// | code | variant |
+    /// |---|---|
+    /// | `io` | [`Error::Io`] |
+    /// | `format` | [`Error::Format`] |
+    /// | `parameter` | [`Error::Parameter`] |
+    /// | `length` | [`Error::Length`] |
+    /// | `size-mismatch` | [`Error::SizeMismatch`] |
+    /// | `pixel-format` | [`Error::PixelFormat`] |
+    /// | `too-large` | [`Error::TooLarge`] |
+    /// | `out-of-memory` | [`Error::OutOfMemory`] |
+    /// | `no-adapter` | [`Error::NoAdapter`] |
+    /// | `device-lost` | [`Error::DeviceLost`] |
+    /// | `timeout` | [`Error::Timeout`] |
+    /// | `busy` | [`Error::Busy`] |
+    /// | `ticket` | [`Error::Ticket`] |
+    /// | `kernel` | [`Error::Kernel`] |
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Io { .. } => "io",
+            Self::Format { .. } => "format",
+            Self::Parameter { .. } => "parameter",
+            Self::Length { .. } => "length",
+            Self::SizeMismatch { .. } => "size-mismatch",
+            Self::PixelFormat { .. } => "pixel-format",
+            Self::TooLarge { .. } => "too-large",
+            Self::OutOfMemory { .. } => "out-of-memory",
+            Self::NoAdapter { .. } => "no-adapter",
+            Self::DeviceLost { .. } => "device-lost",
+            Self::Timeout { .. } => "timeout",
+            Self::Busy { .. } => "busy",
+            Self::Ticket { .. } => "ticket",
+            Self::Kernel { .. } => "kernel",
+        }
+    }
+
     /// An [`Error::Io`] of a file.
     pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::Io { path: path.as_ref().to_owned(), source }
@@ -167,5 +204,46 @@ impl Error {
     /// An [`Error::Parameter`].
     pub fn parameter(name: &'static str, value: impl ToString, expected: impl ToString) -> Self {
         Self::Parameter { name, value: value.to_string(), expected: expected.to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// One of each variant. A new variant does not compile in [`Error::code`] without a code, and belongs into this list.
+    fn each() -> Vec<Error> {
+        let (size, text) = (Size::new(1, 1), String::new);
+        vec![
+            Error::io("a", std::io::Error::other("b")),
+            Error::format("a", "b", "c", "d"),
+            Error::parameter("a", "b", "c"),
+            Error::Length { what: "a", found: 0, expected: 1 },
+            Error::SizeMismatch { what: text(), found: size, expected: size },
+            Error::PixelFormat { found: PixelFormat::Gray8, expected: PixelFormat::Rgb8 },
+            Error::TooLarge { what: text(), size, needed: 2, limit: 1, adapter: text() },
+            Error::OutOfMemory { adapter: text(), size, needed: 1 },
+            Error::NoAdapter { reason: text() },
+            Error::DeviceLost { adapter: text(), reason: text() },
+            Error::Timeout { frame: 0, waited_ms: 2, deadline_ms: 1 },
+            Error::Busy { in_flight: 2, limit: 2 },
+            Error::Ticket { ticket: 0 },
+            Error::Kernel { kernel: text(), problem: text() },
+        ]
+    }
+
+    #[test]
+    fn codes_differ_and_are_those_of_the_documentation() {
+        let codes: BTreeSet<&str> = each().iter().map(Error::code).collect();
+        assert_eq!(codes.len(), each().len(), "{codes:?}");
+        let lines = include_str!("error.rs").lines();
+        let documented: BTreeSet<&str> = lines
+            .filter_map(|line| line.trim().strip_prefix("/// | `")?.split_once("` | [`Error::"))
+            .map(|(code, _)| code)
+            .collect();
+        assert_eq!(codes, documented);
+        let plain = |c: char| c.is_ascii_lowercase() || c == '-';
+        assert!(codes.iter().all(|code| !code.is_empty() && code.chars().all(plain)), "{codes:?}");
     }
 }

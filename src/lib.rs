@@ -26,6 +26,20 @@
 //!
 //! With [`Backend::Gpu`] the same frames go through WGSL kernels on any GPU that `wgpu` reaches; a stated bound holds
 //! between the two (see [`kernels`] and `viewsphere crosscheck`). The layers are described in `ARCHITECTURE.md`.
+//!
+//! # Cargo features
+//!
+//! Without any feature the crate holds what runs on board: [`frame`]s, [`camera`]s, the [`imu`], the [`engine`], the
+//! [`pipeline`] from frames and a gyro to cues, [`live`] intake and [`steer`]ing. `default-features = false` gives just that.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `io` | the module `io`: files of pictures, videos, flow fields, cameras and gyro logs |
+//! | `sim` | the module `sim`: simulated worlds, vehicles, flights and campaigns; with `io`, data sets of them |
+//! | `report` | the module `report`: flow in colours and arrows, overlays and pages; with `sim`, those of flights |
+//! | `serde` | the module `wire`: cues as JSON; with `sim` and `io`, files of worlds and of campaigns |
+//! | `cli` (default) | the command line, with all of these |
+//! | `metal`, `dx12`, `gles` | wgpu's other back ends; Vulkan is always there |
 
 mod backend;
 pub mod camera;
@@ -39,16 +53,26 @@ pub mod flow;
 pub mod frame;
 pub mod gpu;
 pub mod imu;
+#[cfg(feature = "io")]
+pub mod io;
 pub mod kernel;
 pub mod kernels;
+pub mod live;
 pub mod pipeline;
 pub mod plan;
+mod raster;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod runner;
+#[cfg(feature = "sim")]
 pub mod sim;
 pub mod sphere;
 pub mod steer;
 pub mod stream;
+#[cfg(any(feature = "report", all(feature = "sim", feature = "io")))]
+mod text;
+#[cfg(feature = "serde")]
+pub mod wire;
 
 /// The vectors and matrices of this crate's interface.
 pub use glam;
@@ -56,5 +80,5 @@ pub use glam;
 pub use backend::Backend;
 pub use engine::{Config, Engine, Extras, Output, OwnedOutput};
 pub use error::{Error, Result};
-pub use pipeline::{Cue, Pipeline, PipelineConfig};
+pub use pipeline::{Cue, OwnedCue, Pipeline, PipelineConfig};
 pub use stream::{OnLoss, StreamConfig, Ticket};

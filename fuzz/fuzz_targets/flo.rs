@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use viewsphere::frame::flo;
+use viewsphere::io::flo;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(flow) = flo::decode(Path::new("fuzz"), bytes) {

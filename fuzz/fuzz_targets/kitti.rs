@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use viewsphere::frame::kitti;
+use viewsphere::io::kitti;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(flow) = kitti::decode(Path::new("fuzz"), bytes) {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use viewsphere::frame::npy;
+use viewsphere::io::npy;
 
 fuzz_target!(|bytes: &[u8]| {
     let name = Path::new("fuzz");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use viewsphere::frame::picture;
+use viewsphere::io::picture;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(image) = picture::decode(Path::new("fuzz"), bytes) {

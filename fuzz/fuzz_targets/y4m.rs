@@ -1,7 +1,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use viewsphere::frame::{Image, Y4mReader};
+use viewsphere::frame::Image;
+use viewsphere::io::Y4mReader;
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(mut video) = Y4mReader::new(bytes, "fuzz") else { return };

@@ -54,8 +54,8 @@ impl Lens {
         Ok(Self { coefficients: all })
     }
 
-    /// The coefficients that a file needs: 5, or 8 if one of the last three is not 0.
-    pub(super) fn shortest(&self) -> &[f64] {
+    /// The coefficients that a file needs, in the order k1 k2 p1 p2 k3 k4 k5 k6: 5, or 8 if one of the last three is not 0.
+    pub fn shortest(&self) -> &[f64] {
         let rational = self.coefficients[5..].iter().any(|c| *c != 0.0);
         &self.coefficients[..if rational { 8 } else { 5 }]
     }

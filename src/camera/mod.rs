@@ -1,10 +1,10 @@
 //! Cameras: how the pixels of a picture and the directions they look in belong together.
 //!
 //! The camera's frame is x to the right, y down, z forward. Pixel centres lie at whole numbers (OpenCV's convention). All
-//! of it is `f64`; what is done per pixel has its kernels.
+//! of it is `f64`; what is done per pixel has its kernels. Calibration files are read by `io::camera`, which needs the feature
+//! `io`.
 
 mod check;
-mod file;
 mod fold;
 mod lens;
 mod pose;
@@ -12,7 +12,6 @@ mod view;
 
 use glam::{DMat3, DVec3};
 
-pub use file::{Format, decode, kalibr, opencv, read, ros, write};
 pub use lens::Lens;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
 pub use view::View;

@@ -14,7 +14,9 @@ use super::{Outcome, input, print};
 use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
 use crate::eval::{Scene, endpoint_error, flow_error};
-use crate::frame::{FlowField, Image, Plane, Size, arrows, colour_wheel, flo, picture};
+use crate::frame::{FlowField, Image, Plane, Size};
+use crate::io::{flo, picture};
+use crate::report::{arrows, colour_wheel};
 
 /// Frames that are streamed for the speed, beside the first.
 const STREAMED: u32 = 20;

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Outcome, input, print};
 use crate::error::{Error, Result};
 use crate::eval::{FlowError, flow_error};
-use crate::frame::read_flow;
+use crate::io::read_flow;
 
 /// Compare a flow field with the truth.
 ///

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::frame::{Image, PixelFormat, Plane, Size, check_writable, npy, picture};
+use crate::frame::{Image, PixelFormat, Plane, Size};
+use crate::io::{check_creatable, npy, picture};
 
 /// Checks that what `path` holds is as large as what `other` holds.
 pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) -> Result<()> {
@@ -17,16 +18,16 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
 /// Checks that a folder can be written into, or can be made, and leaves nothing behind. An error names the folder that was
 /// given, be it one above it that is at fault.
 pub(super) fn folder(path: &Path) -> Result<()> {
+    not_standard_output(path)?;
+    check_creatable(path)
+}
+
+/// Checks that what is to be a folder is not `-`.
+pub(super) fn not_standard_output(path: &Path) -> Result<()> {
     if path == Path::new("-") {
         return Err(Error::parameter("-o", "-", "a folder, not standard output; ./- is one of that name"));
     }
-    let there = path.ancestors().find(|folder| folder.exists());
-    // An ancestor of no name is the working folder.
-    let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    check_writable(there).map_err(|error| match error {
-        Error::Io { source, .. } => Error::io(path, source),
-        error => error,
-    })
+    Ok(())
 }
 
 /// Makes a folder if it is not there, and does what is to be done in it. If that fails, the folders that were made and that

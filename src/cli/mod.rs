@@ -27,7 +27,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::error::Result;
-use crate::frame::discard_and_exit;
+use crate::io::discard_and_exit;
 
 /// The exit code of a program that was stopped by a signal, as shells give it.
 const INTERRUPTED: i32 = 130;

@@ -67,7 +67,7 @@ impl<'a> Output<'a> {
     }
 
     /// A copy that owns its fields, and outlives the engine's next call.
-    pub fn to_owned(&self) -> OwnedOutput {
+    pub fn into_owned(self) -> OwnedOutput {
         OwnedOutput {
             frame: self.frame,
             previous: self.previous,

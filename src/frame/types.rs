@@ -1,48 +1,5 @@
-use std::fmt;
-
-use super::Size;
+use super::{PixelFormat, Size};
 use crate::error::{Error, Result};
-
-/// How a pixel is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PixelFormat {
-    /// One byte, 0 to 255.
-    Gray8,
-    /// Two bytes in the machine's byte order, 0 to 65535. White is as bright as 255 in 8 bits, with fractions between.
-    Gray16,
-    /// Three bytes: red, green, blue.
-    Rgb8,
-    /// Four bytes: red, green, blue, and alpha, which is ignored.
-    Rgba8,
-}
-
-impl PixelFormat {
-    /// Bytes of one pixel.
-    pub const fn bytes(self) -> usize {
-        match self {
-            Self::Gray8 => 1,
-            Self::Gray16 => 2,
-            Self::Rgb8 => 3,
-            Self::Rgba8 => 4,
-        }
-    }
-
-    /// Words of four bytes of one row in a plan's buffer: every row begins at a whole word.
-    pub const fn row_words(self, width: u32) -> usize {
-        (width as usize * self.bytes()).div_ceil(4)
-    }
-}
-
-impl fmt::Display for PixelFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gray8 => "gray8",
-            Self::Gray16 => "gray16",
-            Self::Rgb8 => "rgb8",
-            Self::Rgba8 => "rgba8",
-        })
-    }
-}
 
 /// A picture that is borrowed from the caller, never copied by this type.
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! What a gyro says about the camera's rotation: samples, their log files, and the rotation between two exposures.
+//! What a gyro says about the camera's rotation: its samples, and the rotation between two exposures.
 //!
 //! ```
 //! use glam::DVec3;
@@ -18,15 +18,14 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! Log files are read by `io::gyro_log`, which needs the feature `io`.
 
-mod columns;
 mod config;
 mod fault;
 mod gyro;
 mod history;
-mod log;
 
 pub use config::{GyroConfig, GyroSample};
 pub use fault::GyroFault;
 pub use gyro::Gyro;
-pub use log::{decode_log, read_log, write_log};

@@ -8,7 +8,7 @@ use crate::frame::FlowField;
 use crate::imu::GyroFault;
 use crate::sphere::{Heading, Sectors, Threat};
 
-/// What a pipeline says of a frame.
+/// What a pipeline says of a frame. It borrows from the pipeline; [`Cue::into_owned`] makes a copy that does not.
 #[derive(Clone, Copy, Debug)]
 pub struct Cue<'a> {
     /// The frame's number, counted from 0 over the pipeline's life.
@@ -46,6 +46,84 @@ pub struct Cue<'a> {
     pub tangent: Option<&'a [f32]>,
     /// Time from submit until now.
     pub latency: Duration,
+}
+
+impl Cue<'_> {
+    /// A copy that owns its data, to be kept or sent to another thread. It copies the sectors, and the flow and the fields
+    /// where they are read.
+    pub fn into_owned(self) -> OwnedCue {
+        OwnedCue {
+            frame: self.frame,
+            time_s: self.time_s,
+            interval_s: self.interval_s,
+            invalid: self.invalid,
+            prev_from_cur: self.prev_from_cur,
+            remaining_turn_rad_s: self.remaining_turn_rad_s,
+            heading: self.heading,
+            sectors: self.sectors.clone(),
+            threat: self.threat,
+            flow: self.flow.cloned(),
+            looming: self.looming.map(<[f32]>::to_vec),
+            cells: self.cells.map(<[f32]>::to_vec),
+            tangent: self.tangent.map(<[f32]>::to_vec),
+            latency: self.latency,
+        }
+    }
+}
+
+/// A [`Cue`] that owns its data. Each field is that of the cue of the same name.
+#[derive(Clone, Debug)]
+pub struct OwnedCue {
+    /// The frame's number: [`Cue::frame`].
+    pub frame: u64,
+    /// The frame's time: [`Cue::time_s`].
+    pub time_s: f64,
+    /// Seconds since the previous frame: [`Cue::interval_s`].
+    pub interval_s: Option<f64>,
+    /// Why the cue is not to be used: [`Cue::invalid`].
+    pub invalid: Option<Invalid>,
+    /// The camera's rotation since the previous frame: [`Cue::prev_from_cur`].
+    pub prev_from_cur: Option<DMat3>,
+    /// The rotation rate that the gyro does not explain, rad/s: [`Cue::remaining_turn_rad_s`].
+    pub remaining_turn_rad_s: Option<DVec3>,
+    /// The direction of motion: [`Cue::heading`].
+    pub heading: Heading,
+    /// The sectors of the view: [`Cue::sectors`].
+    pub sectors: Sectors,
+    /// What will be met first: [`Cue::threat`].
+    pub threat: Option<Threat>,
+    /// The flow back to the previous frame, pixels: [`Cue::flow`].
+    pub flow: Option<FlowField>,
+    /// The rates of each cell: [`Cue::looming`].
+    pub looming: Option<Vec<f32>>,
+    /// The flow of each cell: [`Cue::cells`].
+    pub cells: Option<Vec<f32>>,
+    /// The flow on the view sphere: [`Cue::tangent`].
+    pub tangent: Option<Vec<f32>>,
+    /// Time from submit until the cue was there: [`Cue::latency`].
+    pub latency: Duration,
+}
+
+impl OwnedCue {
+    /// The cue as one that borrows, which is what the other parts of this crate take.
+    pub fn cue(&self) -> Cue<'_> {
+        Cue {
+            frame: self.frame,
+            time_s: self.time_s,
+            interval_s: self.interval_s,
+            invalid: self.invalid,
+            prev_from_cur: self.prev_from_cur,
+            remaining_turn_rad_s: self.remaining_turn_rad_s,
+            heading: self.heading,
+            sectors: &self.sectors,
+            threat: self.threat,
+            flow: self.flow.as_ref(),
+            looming: self.looming.as_deref(),
+            cells: self.cells.as_deref(),
+            tangent: self.tangent.as_deref(),
+            latency: self.latency,
+        }
+    }
 }
 
 /// Why a cue is not to be used.
@@ -90,4 +168,111 @@ pub enum Invalid {
     /// The frame before was lost, and the flow leads from another one.
     #[error("the frame before was lost")]
     Lost,
+}
+
+impl Invalid {
+    /// The kind of the reason, without its values.
+    pub fn kind(&self) -> InvalidKind {
+        match self {
+            Self::First => InvalidKind::First,
+            Self::Interval { .. } => InvalidKind::Interval,
+            Self::Gyro(_) => InvalidKind::Gyro,
+            Self::Coverage { .. } => InvalidKind::Coverage,
+            Self::Lost => InvalidKind::Lost,
+            Self::Frozen => InvalidKind::Frozen,
+            Self::Turn { .. } => InvalidKind::Turn,
+        }
+    }
+}
+
+/// The kinds of [`Invalid`], to count and to send.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum InvalidKind {
+    /// [`Invalid::First`].
+    First,
+    /// [`Invalid::Interval`].
+    Interval,
+    /// [`Invalid::Gyro`].
+    Gyro,
+    /// [`Invalid::Coverage`].
+    Coverage,
+    /// [`Invalid::Lost`].
+    Lost,
+    /// [`Invalid::Frozen`].
+    Frozen,
+    /// [`Invalid::Turn`].
+    Turn,
+}
+
+impl InvalidKind {
+    /// Every kind, in the order in which summaries list them.
+    pub const ALL: [Self; 7] =
+        [Self::First, Self::Interval, Self::Gyro, Self::Coverage, Self::Lost, Self::Frozen, Self::Turn];
+
+    /// Its name in lines and JSON: one word in lower case.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Interval => "interval",
+            Self::Gyro => "gyro",
+            Self::Coverage => "coverage",
+            Self::Lost => "lost",
+            Self::Frozen => "frozen",
+            Self::Turn => "turn",
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::frame::Size;
+    use crate::sphere::Grid;
+
+    #[test]
+    fn an_owned_cue_is_the_cue_and_can_be_sent() {
+        fn sent<T: Send + Clone + 'static>(value: T) -> T {
+            std::thread::spawn(move || value).join().unwrap()
+        }
+        let grid = Grid { columns: 2, rows: 1, azimuth_rad: [-0.5, 0.5], elevation_rad: [0.2, -0.2] };
+        let flow = FlowField { size: Size::new(1, 1), data: vec![[1.5, -2.0]] };
+        let cue = Cue {
+            frame: 7,
+            time_s: 0.25,
+            interval_s: Some(0.03),
+            invalid: Some(Invalid::Coverage { found: 0.1, least: 0.2 }),
+            prev_from_cur: Some(DMat3::from_rotation_y(0.1)),
+            remaining_turn_rad_s: Some(DVec3::X),
+            heading: Heading { direction: DVec3::Z, error_rad: 0.01 },
+            sectors: &Sectors::unknown(grid),
+            threat: Some(Threat {
+                azimuth_rad: 0.1,
+                elevation_rad: 0.2,
+                time_s: 1.5,
+                sectors: 2,
+                alarm: true,
+            }),
+            flow: Some(&flow),
+            looming: Some(&[1.0, 2.0]),
+            cells: None,
+            tangent: None,
+            latency: Duration::from_millis(4),
+        };
+        let text = format!("{cue:?}");
+        let owned = sent(cue.into_owned());
+        // What is printed of a cue is every field of it.
+        assert_eq!(format!("{:?}", owned.cue()), text);
+        assert_eq!(format!("{:?}", owned.clone().cue()), text);
+    }
+
+    #[test]
+    fn every_kind_is_listed_once_under_its_own_name() {
+        for (at, kind) in InvalidKind::ALL.into_iter().enumerate() {
+            assert_eq!(InvalidKind::ALL.iter().position(|other| other.name() == kind.name()), Some(at));
+        }
+        assert_eq!(Invalid::Turn { found_rad_s: 1.0, most_rad_s: 0.5 }.kind().name(), "turn");
+    }
 }

@@ -6,7 +6,7 @@ mod cue;
 use glam::{DMat3, DVec3};
 
 pub use config::PipelineConfig;
-pub use cue::{Cue, Invalid};
+pub use cue::{Cue, Invalid, InvalidKind, OwnedCue};
 
 use crate::backend::Backend;
 use crate::camera::Camera;

@@ -1,6 +1,7 @@
 //! Many flights in one table.
 
-use super::html::{counted, escape, page, paragraph};
+use super::html::{escape, page, paragraph};
+use crate::text::counted;
 
 /// Width of an interval's drawing, pixels.
 const BAR_PX: f64 = 150.0;

@@ -43,11 +43,6 @@ pub(super) fn paragraph(text: impl Display) -> String {
     if text.is_empty() { text } else { format!("<p>{text}</p>\n") }
 }
 
-/// So many of them, in words: `1 flight`, `2 flights`.
-pub(crate) fn counted(count: usize, one: &str) -> String {
-    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
-}
-
 /// A part of a page: a heading, a line about it, and what stands below, which is not escaped.
 pub(super) fn section(heading: &str, about: &str, content: &str) -> String {
     format!("<section>\n<h2>{}</h2>\n{}{content}</section>\n", escape(heading), paragraph(about))
@@ -108,7 +103,6 @@ mod tests {
     #[test]
     fn nothing_is_said_about_a_part_of_which_there_is_nothing_to_say() {
         assert_eq!(section("a", "", "b\n"), "<section>\n<h2>a</h2>\nb\n</section>\n");
-        assert_eq!([0, 1, 2].map(|count| counted(count, "flight")), ["0 flights", "1 flight", "2 flights"]);
     }
 
     #[test]

@@ -1,19 +1,31 @@
-//! Results to look at.
+//! Results to look at: flow in colours and arrows, cues over the picture, and pages. The feature `report` turns this module
+//! on; what shows simulated flights ([`flight`], [`divergence_strip`]) needs the feature `sim`, too.
 
+mod arrows;
 mod campaign;
+#[cfg(feature = "sim")]
 mod canvas;
+mod colour_wheel;
 mod colours;
 mod divergence;
+#[cfg(feature = "sim")]
+mod divergence_strip;
+mod draw;
+#[cfg(feature = "sim")]
 pub mod flight;
 mod font;
+#[cfg(feature = "sim")]
 mod footprint;
 mod html;
 mod overlay;
+#[cfg(feature = "sim")]
 mod plot;
 mod straight;
 
+pub use arrows::arrows;
 pub use campaign::{CampaignRow, campaign_page};
-pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
-#[cfg(feature = "cli")]
-pub(crate) use html::counted;
+pub use colour_wheel::colour_wheel;
+pub use divergence::{FULL_DIVERGENCE_HZ, diverging};
+#[cfg(feature = "sim")]
+pub use divergence_strip::divergence_strip;
 pub use overlay::Overlay;

@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 
+use super::colour_wheel::colour_wheel;
 use super::colours::TIMES;
+use super::draw::line;
 use super::font::text;
 use super::straight::{Straight, pixels};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
-use crate::frame::{FlowField, Frame, Image, PixelFormat, colour_wheel, line};
+use crate::frame::{FlowField, Frame, Image, PixelFormat};
 use crate::pipeline::Cue;
 use crate::sphere::{Grid, Threat, bearing};
 

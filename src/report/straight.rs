@@ -1,8 +1,9 @@
 //! A frame as the ideal camera would have taken it, for the eye.
 
+use super::draw::luma;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Image, Size, luma};
+use crate::frame::{Frame, Image, Size};
 
 /// Where each pixel of the ideal picture is read in the raw frame.
 #[derive(Debug)]

@@ -1,4 +1,5 @@
-//! Made-up worlds with exact truth: what a camera would see in them, and how it would see it move.
+//! Made-up worlds with exact truth: what a camera would see in them, and how it would see it move. The feature `sim` turns
+//! this module on; `data_set` needs the feature `io`, too, and course files and results of campaigns need `io` and `serde`.
 //!
 //! A [`World`] is made of planes, rectangles, cylinders and boxes, whose intersections with a ray have a closed form, so
 //! that nearness and motion are known to the last digits. Each surface has a texture that knows how far away it is seen
@@ -21,6 +22,8 @@
 pub mod campaign;
 mod clearance;
 pub mod course;
+#[cfg(feature = "io")]
+pub mod data_set;
 pub mod flight;
 mod random;
 mod rays;

@@ -7,7 +7,8 @@ use std::process::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 use viewsphere::eval::Scene;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Size, Y4mWriter, flo, npy, picture, read_flow};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
+use viewsphere::io::{Y4mWriter, flo, npy, picture, read_flow};
 
 use crate::feed::feed;
 use crate::need::{self, Without};

@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
-use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size, flo, npy, picture};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
+use viewsphere::io::{flo, npy, picture};
 
 /// A folder of good and bad files.
 fn files() -> TempDir {

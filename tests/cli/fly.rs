@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use viewsphere::frame::{Image, Y4mReader};
+use viewsphere::frame::Image;
+use viewsphere::io::Y4mReader;
 use viewsphere::sim::CourseKind;
 
 use crate::program::{Ended, program, refused};
@@ -321,7 +322,7 @@ fn what_is_measured_changes_nothing_of_the_flight() {
     let ended = fly(folder.path(), "measured", &[&args[..], &["--measure", "--picture-at", "1.5"]].concat());
     assert_eq!(plain.code, ended.code, "{}", ended.stderr);
     assert!(ended.stdout.contains("divergence at 1.50 s, full colour at ±2 /s"), "{}", ended.stdout);
-    let picture = viewsphere::frame::picture::read(folder.path().join("measured/divergence.png")).unwrap();
+    let picture = viewsphere::io::picture::read(folder.path().join("measured/divergence.png")).unwrap();
     // Two pictures of 40 by 30 cells, 4 pixels each, 8 pixels between them and a scale of 30 below.
     assert_eq!(picture.size, "328x150".parse().unwrap());
     assert!(!folder.path().join("plain/divergence.png").exists());

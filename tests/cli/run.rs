@@ -6,9 +6,11 @@ use std::process::Command;
 
 use serde_json::Value;
 use tempfile::TempDir;
-use viewsphere::camera::{self, Camera, Format, Lens};
+use viewsphere::camera::{Camera, Lens};
 use viewsphere::eval::Scene;
-use viewsphere::frame::{Image, PixelFormat, Size, Y4mReader, Y4mWriter, picture};
+use viewsphere::frame::{Image, PixelFormat, Size};
+use viewsphere::io::camera::{self, Format};
+use viewsphere::io::{Y4mReader, Y4mWriter, picture};
 
 use crate::feed::feed;
 use crate::need::{self, Without};

@@ -7,9 +7,11 @@ use std::process::Command;
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 use tempfile::TempDir;
-use viewsphere::camera::{self, FRD_FROM_CAMERA};
-use viewsphere::frame::{FlowField, flo, npy, picture};
-use viewsphere::imu::read_log;
+use viewsphere::camera::FRD_FROM_CAMERA;
+use viewsphere::frame::FlowField;
+use viewsphere::io::camera;
+use viewsphere::io::gyro_log;
+use viewsphere::io::{flo, npy, picture};
 
 const SET: [&str; 12] = [
     "simulate",
@@ -95,7 +97,7 @@ fn a_set_is_whole_and_its_truths_agree() {
     }
     assert!(solid > 2000 && sky > 500, "{solid} {sky}");
     // The sensor's samples lie around the true ones, from the first frame to the last.
-    let [noisy, exact] = ["gyro.csv", "gyro_true.csv"].map(|name| read_log(set.join(name)).unwrap());
+    let [noisy, exact] = ["gyro.csv", "gyro_true.csv"].map(|name| gyro_log::read(set.join(name)).unwrap());
     assert_eq!((noisy.len(), exact.len()), (11 * 8 + 1, 11 * 8 + 1));
     let square: f64 =
         noisy.iter().zip(&exact).map(|(a, b)| (a.gyro_rad_s - b.gyro_rad_s).length_squared()).sum();

@@ -5,8 +5,10 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
-use viewsphere::camera::{self, Camera, Format, Lens};
-use viewsphere::frame::{Image, PixelFormat, Size, picture};
+use viewsphere::camera::{Camera, Lens};
+use viewsphere::frame::{Image, PixelFormat, Size};
+use viewsphere::io::camera::{self, Format};
+use viewsphere::io::picture;
 
 use crate::need;
 

@@ -4,9 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use viewsphere::Error;
-use viewsphere::frame::{
-    FlowField, Image, PixelFormat, Size, flo, kitti, npy, picture, write_atomic, write_bytes, write_flow,
-};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
+use viewsphere::io::{flo, kitti, npy, picture, write_atomic, write_bytes, write_flow};
 
 use crate::need::{self, Without};
 

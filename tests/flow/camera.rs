@@ -5,7 +5,8 @@ use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, Lens, world_from_body};
-use viewsphere::frame::{PixelFormat, Size, picture};
+use viewsphere::frame::{PixelFormat, Size};
+use viewsphere::io::picture;
 use viewsphere::kernels::{lens_map, remap};
 
 use crate::data;
@@ -169,11 +170,11 @@ fn files_that_tools_have_written_are_read() {
     let (Some(chessboard), Some(euroc)) = (data::set("opencv_chessboard"), data::set("euroc_v101")) else {
         return;
     };
-    let camera = viewsphere::camera::read(chessboard.join("left_intrinsics.yml")).unwrap();
+    let camera = viewsphere::io::camera::read(chessboard.join("left_intrinsics.yml")).unwrap();
     assert_eq!((camera.size, camera.f_u), (Size::new(640, 480), 535.915733961632));
     assert_eq!(camera.lens.coefficients[4], 0.23839153080878486);
     for (name, f_u) in [("cam0", 458.654), ("cam1", 457.587)] {
-        let camera = viewsphere::camera::read(euroc.join(format!("{name}_sensor.yaml"))).unwrap();
+        let camera = viewsphere::io::camera::read(euroc.join(format!("{name}_sensor.yaml"))).unwrap();
         assert_eq!((camera.size, camera.f_u), (Size::new(752, 480), f_u));
     }
 }

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use glam::{DMat3, DQuat, DVec3};
-use viewsphere::camera;
 use viewsphere::flow::Farneback;
-use viewsphere::frame::picture;
-use viewsphere::imu::{self, GyroConfig};
+use viewsphere::imu::GyroConfig;
+use viewsphere::io::{camera, gyro_log, picture};
 use viewsphere::sphere::{Derotation, Fields, Sphere};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
@@ -69,7 +68,7 @@ fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64
     };
     let mut pipeline =
         Pipeline::new(Backend::Cpu, &camera, &config).unwrap_or_else(|error| panic!("{error}"));
-    let log = imu::read_log(folder.join("derived_imu0_slice.csv")).unwrap_or_else(|error| panic!("{error}"));
+    let log = gyro_log::read(folder.join("derived_imu0_slice.csv")).unwrap_or_else(|error| panic!("{error}"));
     log.into_iter().for_each(|sample| pipeline.push_gyro(sample));
     let mut files: Vec<_> = std::fs::read_dir(folder.join("cam0"))
         .unwrap_or_else(|error| panic!("{error}"))

@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use viewsphere::Error;
-use viewsphere::imu::{Gyro, GyroConfig, GyroFault, GyroSample, decode_log, read_log, write_log};
+use viewsphere::imu::{Gyro, GyroConfig, GyroFault, GyroSample};
+use viewsphere::io::gyro_log;
 
 use crate::data;
 
@@ -204,7 +205,7 @@ fn the_oldest_samples_go() {
 }
 
 fn decode(text: &str) -> viewsphere::Result<Vec<GyroSample>> {
-    decode_log(Path::new("g.csv"), text.as_bytes())
+    gyro_log::decode(Path::new("g.csv"), text.as_bytes())
 }
 
 #[test]
@@ -240,7 +241,7 @@ fn logs_that_are_not_logs_are_errors_that_name_the_line() {
     assert!(no_gyro.contains("line 1, expected time_s,gyro_x_rad_s"), "{no_gyro}");
     let long = decode(&format!("1,2,3,4\n{}\n", "9".repeat(5000))).unwrap_err().to_string();
     assert!(long.contains("line 2") && long.len() < 120, "{long}");
-    assert!(matches!(read_log("/nonexistent/gyro.csv"), Err(Error::Io { .. })));
+    assert!(matches!(gyro_log::read("/nonexistent/gyro.csv"), Err(Error::Io { .. })));
 }
 
 /// Numbers of a line, the first of which are nanoseconds.
@@ -265,7 +266,10 @@ fn a_recorded_flight_agrees_with_motion_capture() {
     let bias_rad_s = DVec3::from_slice(&truth[0][11..14]);
     let config = GyroConfig { bias_rad_s, camera_from_gyro, ..GyroConfig::default() };
     let mut gyro = Gyro::new(config).unwrap();
-    read_log(folder.join("derived_imu0_slice.csv")).unwrap().into_iter().for_each(|sample| gyro.push(sample));
+    gyro_log::read(folder.join("derived_imu0_slice.csv"))
+        .unwrap()
+        .into_iter()
+        .for_each(|sample| gyro.push(sample));
 
     let mut frames: Vec<f64> = std::fs::read_dir(folder.join("cam0"))
         .unwrap()
@@ -329,8 +333,8 @@ proptest! {
     fn a_log_keeps_every_number_to_the_last_bit(samples in prop::collection::vec(any_sample(), 1..20)) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("gyro.csv");
-        write_log(&path, &samples).unwrap();
-        let back = read_log(&path).unwrap();
+        gyro_log::write(&path, &samples).unwrap();
+        let back = gyro_log::read(&path).unwrap();
         prop_assert_eq!(back.len(), samples.len());
         for (a, b) in samples.iter().zip(&back) {
             let bits = |s: &GyroSample| {
@@ -344,7 +348,7 @@ proptest! {
 
     #[test]
     fn noise_in_place_of_a_log_never_panics(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        let _ = decode_log(Path::new("g.csv"), &bytes[..]);
+        let _ = gyro_log::decode(Path::new("g.csv"), &bytes[..]);
     }
 
     #[test]

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use viewsphere::eval::endpoint_error;
 use viewsphere::flow::{Farneback, Window};
-use viewsphere::frame::{FlowField, Image, flo, picture};
+use viewsphere::frame::{FlowField, Image};
+use viewsphere::io::{flo, picture};
 use viewsphere::kernel::Bound;
 use viewsphere::kernels::compare::{Difference, compare};
 

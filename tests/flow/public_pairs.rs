@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use viewsphere::eval::flow_error;
 use viewsphere::flow::{Farneback, Window};
-use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, flo, picture};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane};
+use viewsphere::io::{flo, picture};
 
 use crate::pair::{On, flow};
 use crate::{data, need};

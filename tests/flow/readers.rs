@@ -4,10 +4,8 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use viewsphere::frame::{
-    FlowField, Frame, Frames, Image, PixelFormat, Plane, RawReader, Size, UNKNOWN_FLOW, Y4mReader, Y4mWriter,
-    flo, kitti, npy, picture, sequence,
-};
+use viewsphere::frame::{FlowField, Frame, Image, PixelFormat, Plane, Size, UNKNOWN_FLOW};
+use viewsphere::io::{Frames, RawReader, Y4mReader, Y4mWriter, flo, kitti, npy, picture, sequence};
 use viewsphere::{Error, Result};
 
 const NAME: &str = "some-file";

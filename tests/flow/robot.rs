@@ -2,7 +2,8 @@
 
 use viewsphere::camera::{Camera, Lens};
 use viewsphere::flow::Farneback;
-use viewsphere::frame::{Size, picture};
+use viewsphere::frame::Size;
+use viewsphere::io::picture;
 use viewsphere::sphere::{Fields, Sphere};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 

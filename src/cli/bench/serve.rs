@@ -14,8 +14,9 @@ use crate::cli::{input, print};
 use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
 use crate::flow::{Algorithm, Farneback, Window};
-use crate::frame::{Frame, PixelFormat, Size, flo};
+use crate::frame::{Frame, PixelFormat, Size};
 use crate::gpu::Gpu;
+use crate::io::flo;
 
 /// Engines that are kept: more would fill the device's memory.
 const MAX_ENGINES: usize = 4;
@@ -50,6 +51,8 @@ struct Answer {
     wall_ms: Vec<f64>,
     adapter: Option<String>,
     error: Option<String>,
+    /// The error's [`Error::code`].
+    code: Option<&'static str>,
 }
 
 struct Server<'a> {
@@ -70,7 +73,9 @@ pub(super) fn serve(args: &BackendArgs) -> Result<()> {
         }
         let answer = match server.answer(&line) {
             Ok(answer) => answer,
-            Err(error) => Answer { error: Some(error.to_string()), ..Answer::default() },
+            Err(error) => {
+                Answer { error: Some(error.to_string()), code: Some(error.code()), ..Answer::default() }
+            }
         };
         print::json_line(&answer)?;
     }

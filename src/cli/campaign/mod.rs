@@ -19,13 +19,13 @@ use super::{Outcome, input, print};
 use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::report::counted;
 use crate::sim::CourseKind;
 use crate::sim::campaign::{
     Campaign as Plan, Configuration, Ended, Faults, Job, Journal, Opened, Results, Shard, fly_all,
 };
 use crate::sim::flight::{self, MAX_LATENCY_FRAMES, Sensor};
 use crate::steer::{Danger, Policy};
+use crate::text::counted;
 
 /// The file that results are kept in.
 const RESULTS: &str = "results.jsonl";

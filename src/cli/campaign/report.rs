@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::cli::print;
 use crate::error::Result;
-use crate::frame::write_bytes;
+use crate::io::write_bytes;
 use crate::report::{CampaignRow, campaign_page};
 use crate::sim::campaign::{Row, Table};
 

@@ -18,7 +18,8 @@ use super::flow_args::FlowArgs;
 use super::{Outcome, input};
 use crate::engine::{Config, Engine, Extras};
 use crate::error::{Error, Result};
-use crate::frame::{FlowField, Image, Plane, Size, read_flow};
+use crate::frame::{FlowField, Image, Plane, Size};
+use crate::io::read_flow;
 
 /// Compute the flow between two pictures, or along a sequence or a video.
 ///

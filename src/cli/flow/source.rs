@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use crate::error::{Error, Result};
-use crate::frame::{Frames, Image, PixelFormat, Size};
+use crate::frame::{Image, PixelFormat, Size};
+use crate::io::Frames;
+use crate::live::FrameSource;
 
 /// A source whose frames belong together. Where one does not, the error names the first one too.
 pub(in crate::cli) struct Source {
@@ -68,5 +70,11 @@ impl Source {
             }
         }
         Ok(images)
+    }
+}
+
+impl FrameSource for Source {
+    fn next_frame(&mut self, image: &mut Image) -> Result<bool> {
+        self.next(image)
     }
 }

@@ -9,10 +9,9 @@ use clap::ValueEnum;
 use super::Flow;
 use crate::cli::{input, print};
 use crate::error::{Error, Result};
-use crate::frame::{
-    FlowField, Image, PixelFormat, Plane, arrows, check_writable, colour_wheel, flo, kitti, npy, picture,
-    write_bytes,
-};
+use crate::frame::{FlowField, Image, PixelFormat, Plane};
+use crate::io::{check_writable, flo, kitti, npy, picture, write_bytes};
+use crate::report::{arrows, colour_wheel};
 
 /// Pixels between arrows.
 const ARROW_STEP: u32 = 16;

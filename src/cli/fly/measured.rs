@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::frame::picture;
+use crate::io::picture;
 use crate::report::{FULL_DIVERGENCE_HZ, divergence_strip};
 use crate::sim::flight::{Divergences, Flight, Measured, Seen};
 

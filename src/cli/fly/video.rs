@@ -4,7 +4,8 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::error::Result;
-use crate::frame::{PixelFormat, Y4mWriter};
+use crate::frame::PixelFormat;
+use crate::io::Y4mWriter;
 use crate::report::flight::FlightVideo;
 use crate::sim::flight::Seen;
 

@@ -1,4 +1,4 @@
-//! The gyro's log, and handing its samples over as a live one would.
+//! The gyro's log, and how the gyro belongs to the camera.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -8,8 +8,9 @@ use glam::{DMat3, DVec3};
 
 use crate::camera::{FLU_FROM_CAMERA, FRD_FROM_CAMERA};
 use crate::error::{Error, Result};
-use crate::imu::{GyroConfig, GyroSample, read_log};
-use crate::pipeline::Pipeline;
+use crate::imu::GyroConfig;
+use crate::io::gyro_log;
+use crate::live::GyroFeed;
 use crate::sphere::Derotation;
 
 /// The gyro, and how it belongs to the camera.
@@ -71,50 +72,10 @@ impl GyroArgs {
     }
 
     /// The log, to be handed over sample by sample.
-    pub(super) fn feed(&self) -> Result<Feed> {
-        let samples = self.gyro.as_ref().map(read_log).transpose()?.unwrap_or_default();
-        Ok(Feed::new(samples, self.gyro_offset_s.unwrap_or(0.0)))
+    pub(super) fn feed(&self) -> Result<GyroFeed> {
+        let samples = self.gyro.as_ref().map(gyro_log::read).transpose()?.unwrap_or_default();
+        Ok(GyroFeed::new(samples, self.gyro_offset_s.unwrap_or(0.0)))
     }
-}
-
-/// A log, handed over in its own order and not before its time.
-pub(super) struct Feed {
-    samples: Vec<GyroSample>,
-    offset_s: f64,
-    next: usize,
-    /// When the last sample that was handed over came.
-    reached_s: f64,
-}
-
-impl Feed {
-    fn new(samples: Vec<GyroSample>, offset_s: f64) -> Self {
-        Self { samples, offset_s, next: 0, reached_s: f64::NEG_INFINITY }
-    }
-
-    /// Hands over what came up to a frame's time, and one sample after it.
-    pub(super) fn push_until(&mut self, pipeline: &mut Pipeline, time_s: f64) {
-        while let Some(&sample) = self.samples.get(self.next).filter(|_| !(self.reached_s > time_s)) {
-            pipeline.push_gyro(sample);
-            if let Some(arrival_s) = self.arrival_s(self.next).filter(|_| is_sound(&sample)) {
-                self.reached_s = arrival_s;
-            }
-            self.next += 1;
-        }
-    }
-
-    /// When a sample came, in the frames' time. That is not always what it states: one wild time must not hold up those
-    /// behind it, so it is the middle one of its own and its neighbours', the earlier of two.
-    fn arrival_s(&self, at: usize) -> Option<f64> {
-        let around = at.saturating_sub(1)..(at + 2).min(self.samples.len());
-        let mut times: Vec<f64> =
-            self.samples[around].iter().map(|sample| sample.time_s).filter(|time| time.is_finite()).collect();
-        times.sort_by(f64::total_cmp);
-        times.get(times.len().saturating_sub(1) / 2).map(|time| time + self.offset_s)
-    }
-}
-
-fn is_sound(sample: &GyroSample) -> bool {
-    sample.time_s.is_finite() && sample.gyro_rad_s.is_finite()
 }
 
 /// Numbers between commas or blanks.
@@ -171,13 +132,5 @@ mod tests {
         assert_eq!(to_camera("optical", DVec3::Y), DVec3::Y);
         assert_eq!(to_camera("0,1,0, 0,0,1, 1,0,0", DVec3::X), DVec3::Z);
         assert!("1,2".parse::<Mount>().is_err() && "up".parse::<Mount>().is_err());
-    }
-
-    #[test]
-    fn a_wild_time_holds_up_nothing_behind_it() {
-        let sample = |time_s: f64| GyroSample { time_s, gyro_rad_s: DVec3::ZERO };
-        let feed = Feed::new([0.0, 0.1, 1e9, 0.3, f64::NAN, 0.5].map(sample).to_vec(), 10.0);
-        let arrivals: Vec<f64> = (0..6).map(|at| feed.arrival_s(at).unwrap()).collect();
-        assert!(arrivals.iter().all(|time| (10.0..=10.5).contains(time)), "{arrivals:?}");
     }
 }

@@ -2,10 +2,8 @@
 
 mod gyro;
 mod horizon;
-mod intake;
-mod line;
 mod summary;
-mod times;
+mod text;
 mod video;
 
 use std::path::{Path, PathBuf};
@@ -13,22 +11,22 @@ use std::time::{Duration, Instant};
 
 use clap::{ArgGroup, Args};
 
-use self::gyro::{Feed, GyroArgs, Numbers};
+use self::gyro::{GyroArgs, Numbers};
 use self::horizon::Horizon;
-use self::intake::{Intake, Reader, Taken};
-use self::line::{Line, Timing};
 use self::summary::Summary;
-use self::times::{Rate, Times};
 use self::video::Video;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
-use crate::camera::{self, Camera, Lens};
+use crate::camera::{Camera, Lens};
 use crate::error::{Error, Result};
 use crate::frame::{Image, Size};
+use crate::io::{self, frame_times};
+use crate::live::{FrameRate, FrameTimes, GyroFeed, Intake, Pace, TimedFrame, TimedFrames};
 use crate::pipeline::{Cue, Pipeline, PipelineConfig};
 use crate::sphere::{Alarm, Sphere};
+use crate::wire::{CueMessage, Timing};
 
 /// Say what will be met, where and when: time to contact per sector of the view, frame by frame.
 ///
@@ -69,7 +67,7 @@ pub(super) struct Run {
     fov_deg: Option<f64>,
     /// Frames a second, such as 25 or 30000/1001 [default: the video's, else 30]
     #[arg(long, value_name = "RATE", conflicts_with = "times")]
-    fps: Option<Rate>,
+    fps: Option<FrameRate>,
     /// The frames' times: EuRoC's `#timestamp [ns],filename`, or one in seconds a line
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
@@ -158,17 +156,17 @@ impl Run {
             ..PipelineConfig::default()
         };
         config.validate()?;
-        let file = self.camera.as_ref().map(|path| Ok((path, camera::read(path)?))).transpose()?;
+        let file = self.camera.as_ref().map(|path| Ok((path, io::camera::read(path)?))).transpose()?;
         let feed = self.gyro.feed()?;
         let source = Source::open(&self.inputs, self.raw)?;
         let times = self.times(&source)?;
-        let mut reader = Reader::new(source, times);
-        let mut first = Taken::default();
-        if !reader.next(&mut first)? {
-            return Err(Error::format(reader.name(), "number of frames", 0, "at least 1"));
+        let mut frames = TimedFrames::new(source, times);
+        let mut first = TimedFrame::default();
+        if !frames.next_frame(&mut first)? {
+            return Err(Error::format(frames.source().name(), "number of frames", 0, "at least 1"));
         }
         let Image { size, format, .. } = first.image;
-        let name = reader.name();
+        let name = frames.source().name();
         let camera = match file {
             Some((path, camera)) => {
                 input::same_size(&name, size, camera.size, path)?;
@@ -182,11 +180,12 @@ impl Run {
         config.certainty = config.mask.is_some();
         let pipeline = Pipeline::new(self.backend.open_unless(self.quiet)?, &camera, &config)?;
         // What it took to get ready is not the frame's age.
-        first.there = Instant::now();
-        let (ideal, rate) = (*pipeline.ideal(), reader.rate().fraction());
+        first.arrived = Instant::now();
+        let (ideal, rate) = (*pipeline.ideal(), frames.times().rate().fraction());
         let intake = match self.realtime {
-            true => Intake::newest(reader, &first, self.inputs == ["-"]),
-            false => Intake::Each(Box::new(reader)),
+            true if self.inputs == ["-"] => Intake::latest(frames, &first, Pace::Source),
+            true => Intake::latest(frames, &first, Pace::Times),
+            false => Intake::each(frames),
         };
         let mut flight = Flight { summary: Summary::new(pipeline.adapter()), pipeline, feed, intake };
         let mut end = Ok(());
@@ -209,21 +208,28 @@ impl Run {
     }
 
     /// Frames until the source ends or fails.
-    fn frames(&self, flight: &mut Flight, mut taken: Taken, mut video: Option<&mut Video<'_>>) -> Result<()> {
+    fn frames(
+        &self,
+        flight: &mut Flight,
+        mut taken: TimedFrame,
+        mut video: Option<&mut Video<'_>>,
+    ) -> Result<()> {
         loop {
             let dropped = flight.intake.dropped();
-            flight.feed.push_until(&mut flight.pipeline, taken.time_s);
+            for sample in flight.feed.until(taken.time_s) {
+                flight.pipeline.push_gyro(*sample);
+            }
             let cue = flight.pipeline.process(&taken.image.frame()?, taken.time_s)?;
             let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
             let timing = Timing {
-                age_ms: milliseconds(taken.there.elapsed()),
+                age_ms: milliseconds(taken.arrived.elapsed()),
                 latency_ms: milliseconds(cue.latency),
                 dropped,
             };
             flight.summary.add(cue.invalid, cue.threat.is_some_and(|threat| threat.alarm));
             let read = self.say(taken.number, &cue, timing)?;
             let seen = video.as_mut().is_none_or(|video| video.add(&taken, &cue));
-            if !(read && seen && flight.intake.next(&mut taken)?) {
+            if !(read && seen && flight.intake.next_frame(&mut taken)?) {
                 return Ok(());
             }
         }
@@ -235,19 +241,19 @@ impl Run {
             return Ok(true);
         }
         let mut text = match self.json_lines {
-            true => print::one_line(&Line::new(number, cue, timing, self.sector_detail))?,
-            false => line::text(number, cue),
+            true => print::one_line(&CueMessage::new(number, cue, timing, self.sector_detail))?,
+            false => text::text(number, cue),
         };
         text.push('\n');
         print::offer(text.as_bytes())
     }
 
-    fn times(&self, source: &Source) -> Result<Times> {
+    fn times(&self, source: &Source) -> Result<FrameTimes> {
         if let Some(path) = &self.times {
-            return Times::read(path, source.len(), self.start_s);
+            return FrameTimes::listed(path, frame_times::read(path)?, source.len(), self.start_s);
         }
-        let rate = self.fps.or_else(|| source.rate().map(Rate::of_fraction));
-        Ok(Times::even(rate.unwrap_or(Rate::DEFAULT), self.start_s))
+        let rate = self.fps.or_else(|| source.rate().map(FrameRate::of_fraction));
+        Ok(FrameTimes::even(rate.unwrap_or(FrameRate::DEFAULT), self.start_s))
     }
 
     /// A camera without a lens, with square pixels and its axis through the middle.
@@ -266,7 +272,7 @@ impl Run {
 /// What a run goes on with.
 struct Flight {
     pipeline: Pipeline,
-    feed: Feed,
-    intake: Intake,
+    feed: GyroFeed,
+    intake: Intake<Source>,
     summary: Summary,
 }

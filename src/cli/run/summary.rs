@@ -4,12 +4,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::line::{KINDS, kind};
 use crate::cli::print;
 use crate::error::Result;
-use crate::pipeline::Invalid;
-use crate::report::counted;
+use crate::pipeline::{Invalid, InvalidKind};
 use crate::stream::Latency;
+use crate::text::counted;
 
 /// Figures over all frames.
 #[derive(Debug, Serialize)]
@@ -41,8 +40,8 @@ struct ByKind {
 }
 
 impl ByKind {
-    /// In the order of [`KINDS`].
-    fn counts(&mut self) -> [&mut u64; KINDS.len()] {
+    /// In the order of [`InvalidKind::ALL`].
+    fn counts(&mut self) -> [&mut u64; InvalidKind::ALL.len()] {
         let Self { first, interval, gyro, coverage, lost, frozen, turn } = self;
         [first, interval, gyro, coverage, lost, frozen, turn]
     }
@@ -69,7 +68,7 @@ impl Summary {
         self.alarms += u64::from(alarm);
         match invalid {
             None => self.valid += 1,
-            Some(reason) => *self.invalid.counts()[kind(&reason)] += 1,
+            Some(reason) => *self.invalid.counts()[reason.kind() as usize] += 1,
         }
     }
 
@@ -85,8 +84,8 @@ impl Summary {
         if json {
             return print::json(self);
         }
-        let named = self.invalid.counts().into_iter().zip(KINDS).filter(|(count, _)| **count > 0);
-        let kinds: Vec<String> = named.map(|(count, kind)| format!("{count} {kind}")).collect();
+        let named = self.invalid.counts().into_iter().zip(InvalidKind::ALL).filter(|(count, _)| **count > 0);
+        let kinds: Vec<String> = named.map(|(count, kind)| format!("{count} {}", kind.name())).collect();
         let invalid = if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") };
         print::note(format_args!(
             "{}, {} valid, invalid: {invalid}; {} dropped, {} with an alarm; latency median {:.2} ms, p99 {:.2} ms; \

@@ -4,11 +4,12 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::horizon::Horizon;
-use super::intake::Taken;
 use crate::camera::Camera;
 use crate::cli::flow::targets::{Place, check_places, place};
 use crate::error::{Error, Result};
-use crate::frame::{PixelFormat, Y4mWriter, write_atomic};
+use crate::frame::PixelFormat;
+use crate::io::{Y4mWriter, write_atomic};
+use crate::live::TimedFrame;
 use crate::pipeline::Cue;
 use crate::report::Overlay;
 
@@ -60,7 +61,7 @@ impl<'a> Video<'a> {
     }
 
     /// Adds a frame. Returns false if that failed, which [`Video::finish`] then tells.
-    pub(super) fn add(&mut self, taken: &Taken, cue: &Cue<'_>) -> bool {
+    pub(super) fn add(&mut self, taken: &TimedFrame, cue: &Cue<'_>) -> bool {
         let Self { overlay, horizon, writer, failed } = self;
         overlay.set_up(horizon.at(cue));
         let added =

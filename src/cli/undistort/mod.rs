@@ -12,9 +12,11 @@ use super::backend::BackendArgs;
 use super::flow::source::Source;
 use super::flow::targets::{Place, check_places, place};
 use super::{Outcome, input, print};
-use crate::camera::{self, Camera, Lens, View};
+use crate::camera::{Camera, Lens, View};
 use crate::error::{Error, Result};
-use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW, arrows, picture};
+use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW};
+use crate::io::{self, picture};
+use crate::report::arrows;
 
 /// There are about so many arrows in a row of the field's picture.
 const ARROWS: u32 = 40;
@@ -89,7 +91,7 @@ struct Places {
 
 impl Undistort {
     pub(super) fn run(&self) -> Result<Outcome> {
-        let raw = camera::read(&self.camera)?;
+        let raw = io::camera::read(&self.camera)?;
         let out = self.ideal(&raw)?;
         let mut source = Source::open(&self.inputs, self.raw)?;
         for (flag, result) in
@@ -109,11 +111,11 @@ impl Undistort {
         }
         if let Some(Place::File(path)) = &places.camera {
             let format = match self.camera_format {
-                FormatArg::Opencv => camera::Format::OpenCv,
-                FormatArg::Ros => camera::Format::Ros,
-                FormatArg::Kalibr => camera::Format::Kalibr,
+                FormatArg::Opencv => io::camera::Format::OpenCv,
+                FormatArg::Ros => io::camera::Format::Ros,
+                FormatArg::Kalibr => io::camera::Format::Kalibr,
             };
-            camera::write(path, &out, format)?;
+            io::camera::write(path, &out, format)?;
         }
         let Some(place) = &places.output else { return Ok(Outcome::Done) };
         let mut resample = Resample::new(&self.backend.open()?, &raw, &out)?;

@@ -1,9 +1,10 @@
 //! A flight as a whole, as a page.
 
 use super::{curves, way};
-use crate::report::html::{counted, figures, page, paragraph, section, tile};
+use crate::report::html::{figures, page, paragraph, section, tile};
 use crate::sim::Course;
 use crate::sim::flight::{Body, Cost, FlightConfig, Measured, Outcome, Record, Sensor, Summary};
+use crate::text::counted;
 
 /// A flight that is over, and what it was flown with.
 #[derive(Clone, Copy, Debug)]

@@ -2,19 +2,19 @@
 //!
 //! A [`Campaign`] is lists of worlds, sensors, policies and so on; every combination of them is a [`Setting`], and that
 //! with a seed is a [`Job`]. [`fly_all`] flies jobs on threads, and a [`Table`] has a row for each setting. `Results`, which
-//! needs the feature `cli`, keeps what was flown in a file, so that a campaign can be interrupted, shared out and put
+//! needs the features `io` and `serde`, keeps what was flown in a file, so that a campaign can be interrupted, shared out and put
 //! together again.
 
 mod faults;
 mod fingerprint;
 mod job;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 mod journal;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 mod line;
 mod plan;
 mod result;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 mod results;
 mod run;
 mod statistics;
@@ -25,11 +25,11 @@ mod testing;
 pub use faults::Faults;
 pub use fingerprint::fingerprint;
 pub use job::{Job, Setting};
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 pub use journal::{Journal, Opened};
 pub use plan::{Campaign, Shard};
 pub use result::{Ended, JobResult};
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 pub use results::{Configuration, Results};
 pub use run::{Open, fly_all};
 pub use statistics::wilson;

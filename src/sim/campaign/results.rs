@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::line::problem;
 use super::{Ended, JobResult, Table, fingerprint};
 use crate::error::{Error, Result};
-use crate::frame::write_atomic;
+use crate::io::write_atomic;
 use crate::sim::flight::FlightConfig;
 
 /// What all results of a file have in common: its first line.

@@ -6,7 +6,7 @@ use crate::sim::flight::{Outcome, Summary};
 
 /// What a campaign says: a row for each setting, in the order of [`Setting::order`].
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Table {
     /// What computed the flow, where there were pictures.
     pub adapters: Vec<String>,
@@ -16,7 +16,7 @@ pub struct Table {
 
 /// The flights of a setting together. What cannot be said of them is none.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Row {
     /// The world's generator.
     pub world: String,

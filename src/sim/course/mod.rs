@@ -20,7 +20,7 @@ mod city;
 mod corridor;
 mod dead_end;
 mod field;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "io", feature = "serde"))]
 pub mod file;
 mod forest;
 mod kind;

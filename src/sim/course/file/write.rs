@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{FORMAT, VERSION};
 use crate::error::Result;
-use crate::frame::write_bytes;
+use crate::io::write_bytes;
 use crate::sim::Form;
 use crate::sim::course::Course;
 

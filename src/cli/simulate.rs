@@ -1,0 +1,294 @@
+//! `viewsphere simulate`: a data set of a flight through a made-up world, with its truth.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::args::{named_by_flags, whole};
+use super::backend::BackendArgs;
+use super::{Outcome, input, print};
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::io;
+use crate::report::diverging;
+use crate::sim::CourseKind;
+use crate::sim::data_set::{DataSetConfig, DataSetSummary, DataSetWriter, Existing, STEPS_PER_S, Truth};
+use crate::sim::flight::camera;
+use crate::sim::vehicle::{GyroErrors, MAX_BIAS_RAD_S};
+use crate::text::counted;
+
+/// A set of so many bytes is announced.
+const LARGE: f64 = 1e9;
+
+/// Make a data set: a flight through a world, its pictures, its gyro and the truth.
+///
+/// The flight is steered by true depth, so that it is one that an aircraft could fly. Beside frames/ the folder holds
+/// times.csv, camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv and a README.md
+/// that says what each file is, in which units and frames, and how it was made. Truth, a file a frame: flow/ (.flo, pixels to
+/// the next frame, unknown where that does not show it), depth/ (.npy, metres along the ray), nearness/ (1/m), divergence/
+/// and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by azimuth and elevation, see --grid).
+///
+/// The same command gives the same files on the same adapter. They are written into FOLDER.partial, which is renamed at the
+/// end; with --force what was there is FOLDER.replaced for that moment. Either is removed where an earlier run that did not
+/// end has left it.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere simulate --world city --seed 3 --seconds 20 -o set/
+  viewsphere simulate --world forest:density=1/64 --speed 8 --size 320x240 --truth flow,depth,spherical -o set/
+  viewsphere simulate --world wall --truth grid --grid 64x16 -o set/
+  viewsphere simulate --world corridor --seconds 3 --truth divergence,nearness --pictures -o set/
+  viewsphere flow 'set/frames/%06d.png' -o estimate/ && viewsphere eval --truth set/flow/000010.flo estimate/000010.flo
+  viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
+    --gyro set/gyro.csv --camera-from-gyro frd")]
+pub(super) struct Simulate {
+    /// The world, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
+    /// dead-end, wires
+    #[arg(long, value_name = "WORLD", default_value = "city")]
+    world: CourseKind,
+    /// What the world and all that is random begin with
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
+    seed: u64,
+    /// How long the flight is, two frames at least and at most 600; it ends earlier at the goal
+    #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Airspeed, m/s: the airframe flies level at 7.7 to 25
+    #[arg(long, value_name = "M_S", default_value_t = 12.0, allow_negative_numbers = true)]
+    speed: f64,
+    /// Size of the pictures
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    size: Size,
+    /// The camera that takes them [default: one of 96° without its lens, with barrel distortion]
+    #[arg(long, value_name = "FILE", conflicts_with = "size")]
+    camera: Option<PathBuf>,
+    /// Frames a second: a divisor of 240
+    #[arg(long, value_name = "RATE", default_value_t = 30, allow_negative_numbers = true)]
+    fps: u32,
+    /// Which truths to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
+    truth: Vec<Truth>,
+    /// Draw a picture beside each file of divergence and nearness: 0 is white, what comes nearer red, what a wall ahead shows
+    /// that is met in a second in full colour
+    #[arg(long)]
+    pictures: bool,
+    /// Azimuths and elevations of the grid of rays over the field of view, with grid in --truth [default: 32x24]
+    #[arg(long, value_name = "AZxEL")]
+    grid: Option<Size>,
+    /// Standard deviation of the noise of the pictures, in gray levels, 0 to 64
+    #[arg(long, value_name = "LEVELS", default_value_t = 2.0, allow_negative_numbers = true)]
+    noise: f64,
+    /// Density of the gyro's white noise, rad/s/√Hz, 0 to 1 [default: 3.4e-4]
+    #[arg(long, value_name = "DENSITY", allow_negative_numbers = true)]
+    gyro_noise: Option<f64>,
+    /// What the gyro says too much about each axis at the start, degrees a second, within ±2005
+    #[arg(long, value_name = "DEG_S", default_value_t = 0.0, allow_negative_numbers = true)]
+    gyro_bias: f64,
+    /// Folder to write into; there must be nothing in it
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Replace what an earlier run has written there
+    #[arg(long)]
+    force: bool,
+    /// Say nothing while it is made
+    #[arg(long)]
+    quiet: bool,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+/// What is said at the end.
+#[derive(Serialize)]
+struct Summary {
+    folder: PathBuf,
+    world: String,
+    seed: u64,
+    frames: usize,
+    fps: u32,
+    /// Seconds from the first frame to the last.
+    duration_s: f64,
+    /// How the flight ended, if it did before the time was over.
+    ended: Option<&'static str>,
+    path_m: f64,
+    least_clearance_m: f64,
+    bytes: u64,
+    /// What is shown in full colour, if there are pictures of truths.
+    full_colour: Option<String>,
+}
+
+impl Simulate {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        self.check()?;
+        let camera = match &self.camera {
+            Some(path) => io::camera::read(path)?,
+            None => camera(self.size),
+        };
+        let course = self.world.course(self.seed)?;
+        let config = self.config()?;
+        config.validate().map_err(named)?;
+        self.warn(&config, camera.size);
+        input::not_standard_output(&self.output)?;
+        let existing = if self.force { Existing::Replace } else { Existing::Refuse };
+        let writer = DataSetWriter::new(&self.output, existing, &course, &camera, &config).map_err(named)?;
+        let backend = self.backend.open_unless(self.quiet)?;
+        let bar = if self.quiet { ProgressBar::hidden() } else { progress(writer.frames()) };
+        let written = writer.write(backend, |frames| bar.set_position(frames as u64));
+        bar.finish_and_clear();
+        self.say(&course.name, &config, &written.map_err(named)?)?;
+        Ok(Outcome::Done)
+    }
+
+    /// Checks what the library does not know, or names otherwise.
+    fn check(&self) -> Result<()> {
+        if !(self.seconds > 0.0 && self.seconds <= 600.0) {
+            return Err(Error::parameter("--seconds", self.seconds, "above 0 and at most 600"));
+        }
+        if !(self.gyro_bias.to_radians().abs() <= MAX_BIAS_RAD_S) {
+            let expected = format!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees());
+            return Err(Error::parameter("--gyro-bias", format_args!("{} °/s", self.gyro_bias), expected));
+        }
+        if self.fps == 0 || !STEPS_PER_S.is_multiple_of(self.fps) {
+            let expected = format!("a divisor of {STEPS_PER_S}");
+            return Err(Error::parameter("--fps", self.fps, expected));
+        }
+        let pictured = |truth: &Truth| truth.full_colour(self.speed).is_some();
+        if self.pictures && !self.truth.iter().any(pictured) {
+            return Err(Error::parameter("--pictures", "on", "divergence or nearness in --truth"));
+        }
+        if let Some(grid) = self.grid.filter(|_| !self.truth.contains(&Truth::Grid)) {
+            let found = format!("{}x{}", grid.width, grid.height);
+            return Err(Error::parameter("--grid", found, "none without grid in --truth"));
+        }
+        Ok(())
+    }
+
+    fn config(&self) -> Result<DataSetConfig> {
+        // Between fewer than two frames nothing moves.
+        let frames = (self.seconds * f64::from(self.fps)).round();
+        if !(frames >= 2.0) {
+            let found = format_args!("{}, {frames} frames at --fps {}", self.seconds, self.fps);
+            let least = format_args!("2 frames and more, from {:.3} s on", 1.5 / f64::from(self.fps));
+            return Err(Error::parameter("--seconds", found, least));
+        }
+        let default = DataSetConfig::default();
+        Ok(DataSetConfig {
+            seed: self.seed,
+            frames: frames as usize,
+            rate_hz: self.fps,
+            speed_m_s: self.speed,
+            noise_levels: self.noise,
+            gyro_errors: GyroErrors {
+                noise_rad_s_rthz: self.gyro_noise.unwrap_or(default.gyro_errors.noise_rad_s_rthz),
+                bias_rad_s: glam::DVec3::splat(self.gyro_bias.to_radians()),
+                ..default.gyro_errors
+            },
+            truths: self.truth.clone(),
+            grid: self.grid.unwrap_or(default.grid),
+            paint: self.pictures.then_some(diverging),
+            made_by: Some(typed()),
+        })
+    }
+
+    /// Says how much will be written, where that is more than is made without a thought.
+    fn warn(&self, config: &DataSetConfig, size: Size) {
+        // A noisy gray picture is not made smaller by PNG.
+        let bytes = config.frames as f64 * config.bytes_per_frame(size);
+        if bytes >= LARGE && !self.quiet {
+            print::note(format_args!(
+                "up to {:.1} GB will be written: {} of {size}",
+                1e-9 * bytes,
+                counted(config.frames, "frame")
+            ));
+        }
+    }
+
+    fn say(&self, world: &str, config: &DataSetConfig, written: &DataSetSummary) -> Result<()> {
+        let summary = Summary {
+            folder: self.output.clone(),
+            world: world.to_owned(),
+            seed: self.seed,
+            frames: written.frames,
+            fps: self.fps,
+            duration_s: written.duration_s,
+            ended: written.ending(),
+            path_m: written.path_m,
+            least_clearance_m: written.least_clearance_m,
+            bytes: written.bytes,
+            full_colour: config.scales(),
+        };
+        if self.json {
+            return print::json(&summary);
+        }
+        let colours = summary.full_colour.as_ref();
+        let colours = colours.map_or(String::new(), |scales| format!("\ncolour  full at {scales}"));
+        let ended = summary.ended.map_or(String::new(), |ended| format!(", then {ended}"));
+        print::text(&format!(
+            "world   {}, seed {}\nflight  {:.2} s, {:.1} m{ended}; nearest surface at {:.2} m\n\
+             set     {}, {:.1} MB in {}{colours}",
+            summary.world,
+            summary.seed,
+            summary.duration_s,
+            summary.path_m,
+            summary.least_clearance_m,
+            counted(summary.frames, "frame"),
+            summary.bytes as f64 / 1e6,
+            summary.folder.display(),
+        ))
+    }
+}
+
+/// An error by the flags.
+fn named(error: Error) -> Error {
+    let flags = [
+        ("speed_m_s", "--speed"),
+        ("noise_levels", "--noise"),
+        ("noise_rad_s_rthz", "--gyro-noise"),
+        ("folder", "-o"),
+    ];
+    match named_by_flags(error, &flags) {
+        Error::Parameter { name, value, expected } => {
+            Error::Parameter { name, value, expected: expected.replace("Existing::Replace", "--force") }
+        }
+        error => error,
+    }
+}
+
+impl ValueEnum for Truth {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let about = match self {
+            Self::Flow => "Pixels to the next frame, .flo",
+            Self::Depth => "Metres along each pixel's ray, .npy",
+            Self::Nearness => "One over that, 1/m, .npy",
+            Self::Divergence => "Divergence of the flow on the view sphere, 1/s, .npy",
+            Self::Spherical => "Flow on the view sphere in the camera's frame, rad/s, .npy",
+            Self::Grid => "Metres along rays at even azimuths and elevations, .npy",
+        };
+        Some(PossibleValue::new(self.name()).help(about))
+    }
+}
+
+/// A bar on standard error, where that is a terminal.
+fn progress(frames: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left");
+    ProgressBar::new(frames as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// The command as it was typed, so that it can be typed again.
+fn typed() -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+".contains(c);
+    let quoted = |word: String| match !word.is_empty() && word.chars().all(plain) {
+        true => word,
+        false => format!("'{}'", word.replace('\'', "'\\''").replace(['\n', '\r'], " ")),
+    };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("viewsphere".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,34 @@
+//! Files: pictures, videos, flow fields, cameras and gyro logs. The feature `io` turns this module on.
+//!
+//! Every format has its own module, with `decode` and `encode` over bytes and `read` and `write` over files. What is read
+//! is checked against the length of the file before memory is taken for it. Files are written whole or not at all
+//! ([`write_atomic`]).
+
+pub mod camera;
+pub mod flo;
+mod flow_file;
+pub mod frame_times;
+mod frames;
+pub mod gyro_log;
+pub mod kitti;
+pub mod npy;
+mod npy_header;
+mod pattern;
+pub mod picture;
+mod raw;
+mod read;
+pub mod sequence;
+mod temporary;
+mod write;
+mod y4m;
+mod y4m_header;
+mod y4m_write;
+
+pub use flow_file::{read_flow, write_flow};
+pub use frames::Frames;
+pub use raw::RawReader;
+#[cfg(feature = "cli")]
+pub(crate) use temporary::discard_and_exit;
+pub use write::{check_creatable, check_writable, remove, write_atomic, write_bytes};
+pub use y4m::Y4mReader;
+pub use y4m_write::Y4mWriter;
