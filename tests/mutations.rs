@@ -166,7 +166,7 @@ fn a_row_never_stored_is_found_as_poison() {
     let Some(gpu) = common::gpu() else { return };
     let skips = mutant(&window_y::KERNEL, "at <= end", "at < end");
     let compared = compare_sides(&gpu, &skips).unwrap_or_else(|error| panic!("{error}"));
-    for common::sides::Compared { what, difference } in compared {
+    for common::sides::Compared { what, difference, .. } in compared {
         let worst = difference.worst.unwrap_or_else(|| panic!("{what}: nothing found"));
         assert_eq!(worst.found.to_bits(), compare::POISON.to_bits(), "{what}: {worst:?}");
     }

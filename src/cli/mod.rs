@@ -7,6 +7,7 @@ mod args;
 mod backend;
 mod bench;
 mod buffers;
+mod cache;
 mod campaign;
 mod crosscheck;
 mod demo;

@@ -6,7 +6,7 @@ use super::Extras;
 use super::layout::{self, Layout};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
-use crate::gpu::Gpu;
+use crate::gpu::{self, Gpu};
 use crate::plan::Plan;
 use crate::sphere::Motion;
 
@@ -116,8 +116,8 @@ pub(crate) fn guarded<T>(gpu: &Gpu, plan: &Plan, make: impl FnOnce() -> Result<T
     let memory = gpu.device.push_error_scope(ErrorFilter::OutOfMemory);
     let validation = gpu.device.push_error_scope(ErrorFilter::Validation);
     let made = make();
-    let invalid = pollster::block_on(validation.pop());
-    let full = pollster::block_on(memory.pop());
+    let invalid = gpu::block_on(validation.pop());
+    let full = gpu::block_on(memory.pop());
     let made = made?;
     if full.is_some() {
         let adapter = gpu.adapter().to_string();

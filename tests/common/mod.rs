@@ -18,7 +18,7 @@ pub(crate) fn gpu() -> Option<Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let open = || {
         let adapter = std::env::var("VIEWSPHERE_ADAPTER").ok();
-        match Gpu::new(&GpuOptions { adapter, allow_software: true }) {
+        match Gpu::new(&GpuOptions { adapter, allow_software: true, ..GpuOptions::default() }) {
             Ok(gpu) => {
                 eprintln!("testing on {}", gpu.adapter());
                 Some(gpu)
