@@ -131,7 +131,10 @@ fn a_frame_takes_no_memory() {
     let plan = config.flow.plan(small, config.format).unwrap();
     // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
     let name = gpu.adapter().name.clone();
-    let open = || Gpu::new(&GpuOptions { adapter: Some(name.clone()), allow_software: true, ..GpuOptions::default() }).unwrap();
+    let open = || {
+        Gpu::new(&GpuOptions { adapter: Some(name.clone()), allow_software: true, ..GpuOptions::default() })
+            .unwrap()
+    };
     let (hand, hand_live) = by_hand(&open(), &plan);
     let (ours, live) = stream(Backend::Gpu(open()), small, &config);
     eprintln!("by hand: {hand} allocations in {FRAMES} frames, {hand_live} bytes more held");

@@ -146,7 +146,8 @@ fn a_lost_device_is_said_and_brought_back_once() {
     if common::gpu().is_none() {
         return;
     }
-    let gpu = || Backend::Gpu(Gpu::new(&GpuOptions { allow_software: true, ..GpuOptions::default() }).unwrap());
+    let gpu =
+        || Backend::Gpu(Gpu::new(&GpuOptions { allow_software: true, ..GpuOptions::default() }).unwrap());
     let records = with_faults([gpu(), gpu()], &["device-lost:0.5", "device-lost:0.8"]);
     assert_eq!(records.len(), 36);
     let lost = |frame: usize| records[frame].invalid.as_ref().is_some_and(|why| why.contains("lost"));

@@ -98,9 +98,8 @@ impl Pipelines {
     /// Compiles kernels, on all threads of rayon's pool; where there are no threads, one after the other.
     async fn compile_all(&self, gpu: &Gpu, kernels: &[&Wanted<'_>]) -> Result<Vec<Pipeline>> {
         if !cfg!(target_arch = "wasm32") && kernels.len() > 1 {
-            let compile = |(_, kernel, variant): &&Wanted<'_>| {
-                blocking::block_on(self.compile(gpu, kernel, variant))
-            };
+            let compile =
+                |(_, kernel, variant): &&Wanted<'_>| blocking::block_on(self.compile(gpu, kernel, variant));
             // The first kernel's error, not that of the fastest thread.
             return kernels.par_iter().map(compile).collect::<Vec<_>>().into_iter().collect();
         }

@@ -102,7 +102,11 @@ pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<Shape> {
 }
 
 /// The module with each `override` constant replaced by its value.
-fn resolve<'a>(module: &'a Module, info: &'a ModuleInfo, variant: &Variant) -> Result<Cow<'a, Module>, String> {
+fn resolve<'a>(
+    module: &'a Module,
+    info: &'a ModuleInfo,
+    variant: &Variant,
+) -> Result<Cow<'a, Module>, String> {
     let declared: Vec<&str> = module.overrides.iter().filter_map(|(_, o)| o.name.as_deref()).collect();
     for (name, _) in variant.constants {
         if !declared.contains(name) {

@@ -25,8 +25,7 @@ pub enum AdapterClass {
 
 impl AdapterClass {
     /// Every class.
-    pub const ALL: [Self; 5] =
-        [Self::Software, Self::Integrated, Self::Discrete, Self::Mobile, Self::Other];
+    pub const ALL: [Self; 5] = [Self::Software, Self::Integrated, Self::Discrete, Self::Mobile, Self::Other];
 
     pub(super) fn of(info: &AdapterInfo) -> Self {
         /// PCI vendor numbers, and where a maker has none the numbers that Khronos gives, of GPUs that are only built

@@ -44,7 +44,8 @@ pub(crate) fn compare_sides(gpu: &Gpu, kernel: &Kernel) -> Result<Vec<Compared>>
                 let default: &Vec<Vec<f32>> = default.get_or_insert_with(|| found.clone());
                 for (i, name) in kernel.outputs.iter().enumerate() {
                     let (kernel, case, extent) = (kernel.name, &case.name, case.extent);
-                    let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+                    let bits =
+                        |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
                     compared.push(Compared {
                         what: format!("{kernel}, {variant}, at {size}, {case}: {name} of {extent}"),
                         difference: compare(&expected[i], &found[i], &bounds[i]),

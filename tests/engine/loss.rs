@@ -17,7 +17,10 @@ fn images() -> Vec<Image> {
 /// A device of its own, as the shared one must live.
 fn own() -> Option<Gpu> {
     let adapter = gpu()?.adapter().name.clone();
-    Some(Gpu::new(&GpuOptions { adapter: Some(adapter), allow_software: true, ..GpuOptions::default() }).unwrap())
+    Some(
+        Gpu::new(&GpuOptions { adapter: Some(adapter), allow_software: true, ..GpuOptions::default() })
+            .unwrap(),
+    )
 }
 
 fn destroy(engine: &Engine) {
