@@ -18,7 +18,9 @@ struct Params {
 
 const SPAN = vec2u(4u, 1u);
 
-@compute @workgroup_size(32, 1)
+override WORKGROUP_X = 32u;
+
+@compute @workgroup_size(WORKGROUP_X, 1)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let stride = (params.width + 3u) / 4u;
     let four = min(id.x, stride - 1u);

@@ -17,7 +17,10 @@ const SPAN = vec2u(4u, 8u);
 const SIDE_BY_SIDE = 5u;
 const MAX_STEPS = 257u;
 
-@compute @workgroup_size(32, 1)
+override WORKGROUP_X = 32u;
+override WORKGROUP_Y = 1u;
+
+@compute @workgroup_size(WORKGROUP_X, WORKGROUP_Y)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let row = i32(SIDE_BY_SIDE * ((params.width + 3u) / 4u));
     let x4 = i32(id.x);

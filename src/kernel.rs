@@ -30,6 +30,23 @@ pub struct Kernel {
     /// How far roundings alone may drive the two sides apart, value by value, where that hangs on the values themselves:
     /// from the same parameters and inputs as the reference, and added to the tolerance.
     pub rounding: Option<Reference>,
+    /// The sets of constants that the shader can be compiled with. The first one is the default.
+    pub variants: &'static [Variant],
+}
+
+/// A named set of values for a shader's `override` constants, such as a workgroup's size. A variant changes how the work
+/// is shared out, not what is computed: every one is held within the kernel's tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// The name, for a [`Tuning`](crate::gpu::Tuning), messages and tests.
+    pub name: &'static str,
+    /// Names of `override` constants and their values. Others keep the value that stands in the shader.
+    pub constants: &'static [(&'static str, f64)],
+}
+
+impl Variant {
+    /// The values that stand in the shader.
+    pub const DEFAULT: Self = Self { name: "default", constants: &[] };
 }
 
 impl Kernel {
@@ -59,7 +76,7 @@ fn largest(values: &[f32]) -> f32 {
 pub type Reference = fn(&[u8], &[&[f32]], &mut [&mut [f32]]);
 
 /// A uniform struct as Rust lays it out, to be compared with what the shader declares.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layout {
     /// Bytes of the struct.
     pub size: usize,
@@ -68,7 +85,7 @@ pub struct Layout {
 }
 
 /// One field of a [`Layout`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Field {
     /// The field's name.
     pub name: &'static str,
@@ -185,28 +202,39 @@ macro_rules! wgsl {
     };
 }
 
-/// Defines `KERNEL`: the shader, the layout and a call of the reference with its arguments unpacked, and one of the
-/// bound's own part, if there is one, which takes the same arguments.
+/// Defines `KERNEL`: the shader, the layout and a call of the reference with its arguments unpacked.
+///
+/// Two arguments may follow: `rounding`, the bound's own part, a function of the reference's arguments; and `variants`
+/// beside the default, `{ name: { CONSTANT = value, … }, … }`.
 macro_rules! kernel {
     (
         $name:literal + [$($lib:literal),*],
         $reference:ident $arguments:tt -> $outputs:tt,
         cases: $cases:expr,
-        tolerance: $tolerance:expr $(,)?
-    ) => {
-        $crate::kernel::kernel!(@define $name + [$($lib),*], $reference $arguments -> $outputs, $cases, $tolerance, None);
-    };
-    (
-        $name:literal + [$($lib:literal),*],
-        $reference:ident $arguments:tt -> $outputs:tt,
-        cases: $cases:expr,
-        tolerance: $tolerance:expr,
-        rounding: $rounding:ident $(,)?
+        tolerance: $tolerance:expr
+        $(, rounding: $rounding:ident)?
+        $(, variants: $variants:tt)?
+        $(,)?
     ) => {
         $crate::kernel::kernel!(
             @define $name + [$($lib),*], $reference $arguments -> $outputs, $cases, $tolerance,
-            Some($crate::kernel::kernel!(@call $rounding $arguments -> $outputs))
+            $crate::kernel::kernel!(@option $($rounding $arguments -> $outputs)?),
+            $crate::kernel::kernel!(@variants $($variants)?)
         );
+    };
+    (@option) => { None };
+    (@option $function:ident $arguments:tt -> $outputs:tt) => {
+        Some($crate::kernel::kernel!(@call $function $arguments -> $outputs))
+    };
+    (@variants) => { &[$crate::kernel::Variant::DEFAULT] };
+    (@variants { $($variant:ident: { $($constant:ident = $value:literal),+ $(,)? }),+ $(,)? }) => {
+        &[
+            $crate::kernel::Variant::DEFAULT,
+            $($crate::kernel::Variant {
+                name: stringify!($variant),
+                constants: &[$((stringify!($constant), $value as f64)),+],
+            },)+
+        ]
     };
     (@call $function:ident($params:ident; $($input:ident),*) -> ($($output:ident),*)) => {
         |params, inputs, outputs| {
@@ -220,7 +248,7 @@ macro_rules! kernel {
     (
         @define $name:literal + [$($lib:literal),*],
         $reference:ident($params:ident; $($input:ident),*) -> ($($output:ident),*),
-        $cases:expr, $tolerance:expr, $rounding:expr
+        $cases:expr, $tolerance:expr, $rounding:expr, $variants:expr
     ) => {
         /// The kernel, for the registry.
         pub static KERNEL: $crate::kernel::Kernel = $crate::kernel::Kernel {
@@ -235,6 +263,7 @@ macro_rules! kernel {
             cases: $cases,
             tolerance: $tolerance,
             rounding: $rounding,
+            variants: $variants,
         };
     };
 }

@@ -41,6 +41,8 @@
 //! | `cli` (default) | the command line, with all of these |
 //! | `metal`, `dx12`, `gles` | wgpu's other back ends; Vulkan is always there |
 
+#[cfg_attr(not(feature = "io"), allow(dead_code, reason = "only compiled kernels are kept then"))]
+mod atomic_file;
 mod backend;
 pub mod camera;
 #[cfg(feature = "cli")]

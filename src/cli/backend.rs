@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::print;
+use super::{cache, print};
 use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, GpuOptions};
@@ -37,13 +37,13 @@ impl BackendArgs {
 
     /// The same, and says nothing if `quiet`.
     pub(super) fn open_unless(&self, quiet: bool) -> Result<Backend> {
-        self.open_with(&GpuOptions::default(), quiet)
+        self.open_with(&options(), quiet)
     }
 
     /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
     /// counts for more than speed.
     pub(super) fn open_for_shaders(&self) -> Result<Backend> {
-        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() }, false)
+        self.open_with(&GpuOptions { allow_software: true, ..options() }, false)
     }
 
     /// Two of the same kind, on devices of their own: what happens to one does not happen to the other.
@@ -57,7 +57,7 @@ impl BackendArgs {
     pub(super) fn open_like(&self, opened: &Backend) -> Result<Backend> {
         match (opened, self.backend, &self.adapter) {
             (Backend::Cpu, ..) => Ok(Backend::Cpu),
-            (Backend::Gpu(_), None, None) => Gpu::new(&GpuOptions::default()).map(Backend::Gpu),
+            (Backend::Gpu(_), None, None) => Gpu::new(&options()).map(Backend::Gpu),
             (Backend::Gpu(_), ..) => self.gpu().map(Backend::Gpu),
         }
     }
@@ -94,7 +94,7 @@ impl BackendArgs {
         if self.adapter.is_some() {
             return Ok(vec![self.named()?, Backend::Cpu]);
         }
-        match Gpu::new(&GpuOptions::default()) {
+        match Gpu::new(&options()) {
             Ok(gpu) => Ok(vec![Backend::Gpu(gpu), Backend::Cpu]),
             Err(Error::NoAdapter { reason }) => {
                 print::note(format_args!("only the CPU; no usable GPU adapter: {reason}"));
@@ -124,6 +124,11 @@ impl BackendArgs {
 
     /// The adapter that is named, or any: for those who asked for a GPU.
     pub(super) fn gpu(&self) -> Result<Gpu> {
-        Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })
+        Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true, ..options() })
     }
+}
+
+/// The best real GPU, with the user's cache of compiled kernels.
+pub(super) fn options() -> GpuOptions {
+    GpuOptions { pipeline_cache: cache::folder(), ..GpuOptions::default() }
 }

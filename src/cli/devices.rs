@@ -34,6 +34,7 @@ struct Device {
     name: String,
     #[serde(rename = "type")]
     kind: String,
+    class: String,
     backend: String,
     driver: String,
     max_buffer_bytes: u64,
@@ -67,9 +68,16 @@ impl Device {
     fn new(adapter: &wgpu::Adapter) -> Self {
         let (info, limits) = (adapter.get_info(), adapter.limits());
         // Whether a device can be had shows only when it is asked for.
-        let named = GpuOptions { adapter: Some(AdapterName::new(&info).to_string()), allow_software: true };
+        let adapter_name = AdapterName::new(&info);
+        let class = adapter_name.class;
+        let named = GpuOptions {
+            adapter: Some(adapter_name.to_string()),
+            allow_software: true,
+            ..GpuOptions::default()
+        };
         let why_not = Gpu::new(&named).err().map(|error| error.to_string());
         Self {
+            class: class.to_string(),
             kind: format!("{:?}", info.device_type),
             backend: format!("{:?}", info.backend),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
@@ -93,7 +101,7 @@ impl Device {
         let mib = |bytes: u64| bytes >> 20;
         let [x, y, z] = self.max_workgroup_size;
         format!(
-            "{}\n  type         {}\n  backend      {}\n  driver       {}\n  usable       {}\n  buffers      \
+            "{}\n  type         {}\n  class        {}\n  backend      {}\n  driver       {}\n  usable       {}\n  buffers      \
              {} MiB at most, {} MiB bound, {} a stage\n  workgroups   {} invocations, {x}×{y}×{z}\n  timestamps   {}\n",
             self.name,
             if self.kind == "Cpu" {
@@ -101,6 +109,7 @@ impl Device {
             } else {
                 &self.kind
             },
+            self.class,
             self.backend,
             self.driver,
             self.why_not.as_ref().map_or("yes".to_owned(), |reason| format!("no: {reason}")),

@@ -1,4 +1,4 @@
-//! The process's environment, before anything else runs. The library's and the command line's only unsafe code is here.
+//! The process's environment, before anything else runs. The command line's only unsafe code is here.
 
 /// Gives Mesa's Vulkan drivers a folder for run-time files where the system has set none.
 ///

@@ -6,6 +6,7 @@
 mod args;
 mod backend;
 mod bench;
+mod cache;
 mod campaign;
 mod crosscheck;
 mod demo;

@@ -1,12 +1,14 @@
 //! Finding an adapter, and saying which one it is.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Instance};
 
+use super::tuning::{AdapterClass, Tuning};
 use crate::error::{Error, Result};
 
-/// Which adapter to take.
+/// Which adapter to take, and how to use it.
 #[derive(Clone, Debug, Default)]
 pub struct GpuOptions {
     /// Part of the adapter's name, upper or lower case; none for the best one there is.
@@ -15,6 +17,14 @@ pub struct GpuOptions {
     ///
     /// Off by default: such an adapter is slower than the CPU executor.
     pub allow_software: bool,
+    /// A folder that keeps the driver's compiled code from one process to the next, where the adapter can
+    /// (`Features::PIPELINE_CACHE`); it is made when it is needed. None, the default, writes nothing. Native only.
+    ///
+    /// It must be a folder that only the user can write into: drivers trust what they once have compiled. A file in it that
+    /// is damaged or of another driver is replaced, and a folder that cannot be written into is no error.
+    pub pipeline_cache: Option<PathBuf>,
+    /// Which variant of each kernel the adapter runs: by default each one's first.
+    pub tuning: Tuning,
 }
 
 /// What is known of an adapter.
@@ -28,6 +38,8 @@ pub struct AdapterName {
     pub backend: String,
     /// Whether it computes on the CPU.
     pub software: bool,
+    /// The class by which its kernels are tuned.
+    pub class: AdapterClass,
 }
 
 impl AdapterName {
@@ -38,6 +50,7 @@ impl AdapterName {
             driver: driver.trim().to_owned(),
             backend: format!("{:?}", info.backend),
             software: info.device_type == DeviceType::Cpu,
+            class: AdapterClass::of(info),
         }
     }
 }
@@ -50,11 +63,11 @@ impl fmt::Display for AdapterName {
 }
 
 /// Every adapter of this machine.
-pub fn adapters() -> Vec<Adapter> {
-    pollster::block_on(instance().enumerate_adapters(Backends::all()))
+pub(super) async fn list() -> Vec<Adapter> {
+    instance().enumerate_adapters(Backends::all()).await
 }
 
-pub(super) fn instance() -> Instance {
+fn instance() -> Instance {
     Instance::new(wgpu::InstanceDescriptor {
         backends: Backends::all(),
         // Validation layers are for those who write this crate, and are not everywhere.
@@ -67,8 +80,8 @@ pub(super) fn instance() -> Instance {
 ///
 /// # Errors
 /// [`Error::NoAdapter`], with what is there and what to do.
-pub(super) fn choose(options: &GpuOptions) -> Result<Adapter> {
-    let mut found = adapters();
+pub(super) async fn choose(options: &GpuOptions) -> Result<Adapter> {
+    let mut found = list().await;
     let names: Vec<String> =
         found.iter().map(|adapter| AdapterName::new(&adapter.get_info()).to_string()).collect();
     let fail = |reason: String| Err(Error::NoAdapter { reason });

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, Buffer, BufferDescriptor, BufferUsages, ComputePass, ComputePipeline, QuerySet};
 
-use super::{Gpu, reflect};
+use super::pipelines::Pipeline;
+use super::{Gpu, blocking, reflect};
 use crate::error::{Error, Result};
 use crate::kernel::Kernel;
 use crate::plan::{BufId, Content, Plan, Step};
@@ -34,31 +35,7 @@ impl Dispatch {
     }
 }
 
-/// A pipeline and how much a workgroup of it covers.
-#[derive(Clone)]
-struct Pipeline {
-    pipeline: ComputePipeline,
-    shape: reflect::Shape,
-}
-
 impl Pipeline {
-    fn new(gpu: &Gpu, kernel: &Kernel) -> Result<Self> {
-        let shape = reflect::reflect(kernel)?;
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(kernel.name),
-            source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(kernel.name),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        Ok(Self { pipeline, shape })
-    }
-
     fn dispatch(
         &self,
         gpu: &Gpu,
@@ -84,12 +61,21 @@ impl Pipeline {
 }
 
 impl GpuExecutor {
+    /// Makes the plan's buffers, pipelines and bind groups, and has the device run what is computed once. Native only: it
+    /// blocks. [`GpuExecutor::open`] does the same and does not.
+    ///
+    /// # Errors
+    /// As [`GpuExecutor::open`].
+    pub fn new(gpu: &Gpu, plan: &Plan) -> Result<Self> {
+        blocking::block_on(Self::open(gpu, plan))
+    }
+
     /// Makes the plan's buffers, pipelines and bind groups, and has the device run what is computed once.
     ///
     /// # Errors
     /// [`Error::TooLarge`] if a buffer is over the device's limits, [`Error::Kernel`] if a shader does not fit its
-    /// kernel, [`Error::DeviceLost`] if the device was lost.
-    pub fn new(gpu: &Gpu, plan: &Plan) -> Result<Self> {
+    /// kernel or does not compile, [`Error::DeviceLost`] if the device was lost.
+    pub async fn open(gpu: &Gpu, plan: &Plan) -> Result<Self> {
         check_limits(gpu, plan)?;
         let bufs: Vec<Buffer> = plan
             .bufs
@@ -104,14 +90,14 @@ impl GpuExecutor {
                 }),
             })
             .collect();
-        let mut pipelines = HashMap::new();
-        let mut dispatches = |steps: &[Step]| dispatches(gpu, steps, &bufs, &mut pipelines);
-        let ingest = [dispatches(&plan.ingest[0])?, dispatches(&plan.ingest[1])?];
-        let pair = [dispatches(&plan.pair[0])?, dispatches(&plan.pair[1])?];
+        let pipelines = Compiled::of(gpu, plan).await?;
+        let dispatches = |steps: &[Step]| dispatches(gpu, steps, &bufs, &pipelines);
+        let ingest = [dispatches(&plan.ingest[0]), dispatches(&plan.ingest[1])];
+        let pair = [dispatches(&plan.pair[0]), dispatches(&plan.pair[1])];
         if !plan.setup.is_empty() {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            dispatches(&plan.setup)?.iter().for_each(|dispatch| dispatch.record(&mut pass));
+            dispatches(&plan.setup).iter().for_each(|dispatch| dispatch.record(&mut pass));
             drop(pass);
             gpu.submit(encoder);
         }
@@ -161,15 +147,23 @@ impl GpuExecutor {
         self.gpu.queue.write_buffer(self.buf(id), 0, bytemuck::cast_slice(values));
     }
 
-    /// Reads the first `len` values of a buffer, and waits for them. For tests and comparisons.
+    /// Reads the first `len` values of a buffer, and waits for them. For tests and comparisons. Native only: it blocks.
     ///
     /// # Errors
     /// [`Error::DeviceLost`] if the device was lost.
     pub fn read(&self, id: BufId, len: usize) -> Result<Vec<f32>> {
-        read(&self.gpu, self.buf(id), len)
+        self.gpu.wait_for(self.fetch(id, len))
     }
 
-    /// Runs one step of the plan's `ingest` and `pair` list and waits for it. For comparisons.
+    /// Reads the first `len` values of a buffer. As for [`Gpu::finished`], somebody must poll the device.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`] if the device was lost.
+    pub async fn fetch(&self, id: BufId, len: usize) -> Result<Vec<f32>> {
+        read(&self.gpu, self.buf(id), len).await
+    }
+
+    /// Runs one step of the plan's `ingest` and `pair` list and waits for it. For comparisons. Native only: it blocks.
     ///
     /// # Errors
     /// [`Error::DeviceLost`] if the device was lost.
@@ -184,12 +178,25 @@ impl GpuExecutor {
     }
 }
 
-fn dispatches(
-    gpu: &Gpu,
-    steps: &[Step],
-    bufs: &[Buffer],
-    pipelines: &mut HashMap<&'static str, Pipeline>,
-) -> Result<Vec<Dispatch>> {
+/// The pipelines of a plan's kernels.
+struct Compiled(HashMap<*const Kernel, Pipeline>);
+
+impl Compiled {
+    async fn of(gpu: &Gpu, plan: &Plan) -> Result<Self> {
+        let steps = [&plan.setup].into_iter().chain(&plan.ingest).chain(&plan.pair).flatten();
+        let mut kernels: Vec<&'static Kernel> = steps.map(|step| step.kernel).collect();
+        kernels.sort_by_key(|kernel| std::ptr::from_ref(*kernel));
+        kernels.dedup_by_key(|kernel| std::ptr::from_ref(*kernel));
+        let pipelines = gpu.pipelines.get(gpu, &kernels).await?;
+        Ok(Self(kernels.into_iter().map(std::ptr::from_ref).zip(pipelines).collect()))
+    }
+
+    fn of_step(&self, step: &Step) -> &Pipeline {
+        &self.0[&std::ptr::from_ref(step.kernel)]
+    }
+}
+
+fn dispatches(gpu: &Gpu, steps: &[Step], bufs: &[Buffer], pipelines: &Compiled) -> Vec<Dispatch> {
     let align = gpu.limits().min_uniform_buffer_offset_alignment as usize;
     let mut bytes = Vec::new();
     let mut offsets = Vec::new();
@@ -207,12 +214,6 @@ fn dispatches(
         .iter()
         .zip(offsets)
         .map(|(step, offset)| {
-            let pipeline = match pipelines.entry(step.kernel.name) {
-                std::collections::hash_map::Entry::Occupied(entry) => entry.into_mut(),
-                std::collections::hash_map::Entry::Vacant(entry) => {
-                    entry.insert(Pipeline::new(gpu, step.kernel)?)
-                }
-            };
             let buffers: Vec<&Buffer> = (step.inputs.iter())
                 .chain(step.outputs.iter().map(|(id, _)| id))
                 .map(|id| &bufs[id.index()])
@@ -223,7 +224,8 @@ fn dispatches(
                 size: std::num::NonZero::new(step.params.len() as u64),
             });
             let label = format!("{}, {}", step.kernel.name, step.label);
-            Ok(pipeline.dispatch(gpu, &label, params, &buffers, [step.extent.width, step.extent.height]))
+            let extent = [step.extent.width, step.extent.height];
+            pipelines.of_step(step).dispatch(gpu, &label, params, &buffers, extent)
         })
         .collect()
 }
@@ -262,7 +264,7 @@ fn storage(gpu: &Gpu, label: &str, values: &[f32]) -> Buffer {
     })
 }
 
-fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
+async fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
     let size = 4 * len as u64;
     let target = gpu.device.create_buffer(&BufferDescriptor {
         label: Some("read"),
@@ -275,12 +277,12 @@ fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
     gpu.submit(encoder);
     // Whether mapping worked shows when the range is asked for.
     target.map_async(wgpu::MapMode::Read, .., |_| {});
-    gpu.finish()?;
+    gpu.finished().await?;
     let range = target.get_mapped_range(..).map_err(|error| gpu.lost_error(error.to_string()))?;
     Ok(bytemuck::pod_collect_to_vec(&range))
 }
 
-pub(super) fn run_alone(
+pub(super) async fn run_alone(
     gpu: &Gpu,
     kernel: &Kernel,
     params: &[u8],
@@ -288,7 +290,9 @@ pub(super) fn run_alone(
     outputs: Vec<Vec<f32>>,
     extent: [u32; 2],
 ) -> Result<Vec<Vec<f32>>> {
-    let pipeline = Pipeline::new(gpu, kernel)?;
+    let [pipeline] = &gpu.pipelines.get(gpu, &[kernel]).await?[..] else {
+        unreachable!("one kernel has one pipeline");
+    };
     let params = gpu.device.create_buffer_init(&BufferInitDescriptor {
         label: Some("params"),
         contents: params,
@@ -306,5 +310,9 @@ pub(super) fn run_alone(
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     dispatch.record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
     gpu.submit(encoder);
-    outputs.into_iter().map(|(buffer, len)| read(gpu, &buffer, len)).collect()
+    let mut results = Vec::with_capacity(outputs.len());
+    for (buffer, len) in outputs {
+        results.push(read(gpu, &buffer, len).await?);
+    }
+    Ok(results)
 }

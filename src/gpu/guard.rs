@@ -16,8 +16,8 @@ impl Gpu {
         let memory = self.device.push_error_scope(ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(ErrorFilter::Validation);
         let made = make();
-        let invalid = pollster::block_on(validation.pop());
-        let full = pollster::block_on(memory.pop());
+        let invalid = super::block_on(validation.pop());
+        let full = super::block_on(memory.pop());
         let made = made?;
         if full.is_some() {
             let adapter = self.adapter().to_string();

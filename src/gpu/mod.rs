@@ -1,33 +1,45 @@
 //! The GPU executor: adapter, device, pipelines, and a plan's buffers on the device.
+//!
+//! What takes time is asynchronous inside: [`Gpu::open`], [`Gpu::finished`], [`GpuExecutor::open`]. The blocking calls
+//! ([`Gpu::new`], [`Gpu::finish`], [`GpuExecutor::new`]) are thin faces of these, and native only, as a browser lets no
+//! thread wait. Native only, too, are the pipelines on disk ([`GpuOptions::pipeline_cache`]) and compiling on several
+//! threads.
 
 mod adapter;
+mod blocking;
+mod disk_cache;
 mod executor;
+mod finished;
 mod guard;
+mod pipelines;
 mod reflect;
+mod tuning;
 
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
 
-pub use adapter::{AdapterName, GpuOptions, adapters};
+pub use adapter::{AdapterName, GpuOptions};
+pub use blocking::adapters;
+pub(crate) use blocking::block_on;
+use disk_cache::DiskCache;
 pub use executor::GpuExecutor;
-pub use reflect::{Shape, reflect};
-use wgpu::{Device, Features, Limits, PollType, Queue};
+pub use finished::Finished;
+use pipelines::Pipelines;
+pub use reflect::{Shape, reflect, reflect_variant};
+pub use tuning::{AdapterClass, Tuning};
+use wgpu::{Device, Features, Limits, Queue};
 
 use crate::error::{Error, Result};
-use crate::kernel::Kernel;
-use crate::kernels::compare::POISON;
 
-/// How long one thread keeps others from polling.
-const SLICE: Duration = Duration::from_millis(5);
-
-/// A device to compute on.
+/// A device to compute on, and the kernels that were compiled for it.
 ///
-/// Cloning it is cheap and gives the same device.
+/// Cloning it is cheap and gives the same device with the same kernels.
 #[derive(Clone)]
 pub struct Gpu {
     pub(crate) device: Device,
     pub(crate) queue: Queue,
     name: AdapterName,
+    tuning: Arc<Tuning>,
+    pipelines: Arc<Pipelines>,
     lost: Arc<Mutex<Option<String>>>,
     polling: Arc<Mutex<()>>,
     /// How the device can be had again, if it is this crate's.
@@ -39,10 +51,11 @@ impl Gpu {
     ///
     /// # Errors
     /// [`Error::NoAdapter`] if none fits the options or the driver refuses, with the reason and what to do.
-    pub fn new(options: &GpuOptions) -> Result<Self> {
-        let adapter = adapter::choose(options)?;
+    pub async fn open(options: &GpuOptions) -> Result<Self> {
+        let adapter = adapter::choose(options).await?;
         let name = AdapterName::new(&adapter.get_info());
-        let wanted = Features::TIMESTAMP_QUERY | Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+        let mut wanted = Features::TIMESTAMP_QUERY | Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+        wanted.set(Features::PIPELINE_CACHE, options.pipeline_cache.is_some());
         let limits = adapter.limits();
         let storage_buffers = limits.max_storage_buffers_per_shader_stage;
         if storage_buffers < reflect::MAX_STORAGE_BUFFERS as u32 {
@@ -61,9 +74,14 @@ impl Gpu {
             },
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|error| Error::NoAdapter { reason: format!("{name} refuses a device: {error}") })?;
+        let disk = options.pipeline_cache.as_ref().and_then(|folder| DiskCache::open(&device, folder));
         let mut gpu = Self::with_name(device, queue, name);
+        gpu.pipelines = Arc::new(Pipelines::new(disk));
+        gpu.tuning = Arc::new(options.tuning.clone());
         gpu.options = Some(options.clone());
         Ok(gpu)
     }
@@ -82,18 +100,45 @@ impl Gpu {
                 if message.is_empty() { format!("{reason:?}") } else { format!("{reason:?}: {message}") };
             *note.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(text);
         });
-        Self { device, queue, name, lost, polling: Arc::default(), options: None }
+        let pipelines = Arc::new(Pipelines::new(None));
+        Self {
+            device,
+            queue,
+            name,
+            tuning: Arc::default(),
+            pipelines,
+            lost,
+            polling: Arc::default(),
+            options: None,
+        }
+    }
+
+    /// The same device with another tuning. Kernels that are compiled already are not compiled again.
+    #[must_use]
+    pub fn with_tuning(&self, tuning: Tuning) -> Self {
+        Self { tuning: Arc::new(tuning), ..self.clone() }
+    }
+
+    /// The tuning in use.
+    pub fn tuning(&self) -> &Tuning {
+        &self.tuning
+    }
+
+    /// How many pipelines this device keeps compiled: one for each kernel and set of constants that was used.
+    pub fn pipelines(&self) -> usize {
+        self.pipelines.len()
     }
 
     /// Opens a device like this one anew, after a loss.
     ///
     /// # Errors
-    /// [`Error::DeviceLost`] if the device was the caller's, else as [`Gpu::new`].
-    pub fn reopen(&self) -> Result<Self> {
-        match &self.options {
-            Some(options) => Self::new(options),
-            None => Err(self.lost_error("the device belongs to the caller")),
-        }
+    /// [`Error::DeviceLost`] if the device was the caller's, else as [`Gpu::open`].
+    pub async fn open_again(&self) -> Result<Self> {
+        let Some(options) = &self.options else {
+            return Err(self.lost_error("the device belongs to the caller"));
+        };
+        let opened = Self::open(options).await?;
+        Ok(Self { tuning: self.tuning.clone(), ..opened })
     }
 
     /// The adapter in use.
@@ -131,31 +176,12 @@ impl Gpu {
         Error::DeviceLost { adapter: self.name.to_string(), reason }
     }
 
-    /// Waits until everything submitted is done.
+    /// A future that is ready when everything is done that has been submitted so far.
     ///
-    /// # Errors
-    /// [`Error::DeviceLost`] if the device was lost.
-    pub fn finish(&self) -> Result<()> {
-        self.poll(PollType::wait_indefinitely()).map(|_| ())
-    }
-
-    /// Polls the device. True if what was waited for is done, or if nothing submitted is left to do.
-    pub(crate) fn poll(&self, kind: PollType) -> Result<bool> {
-        let PollType::Wait { submission_index, timeout } = kind else {
-            return self.poll_once(kind);
-        };
-        let deadline = timeout.map(|timeout| Instant::now() + timeout);
-        loop {
-            let left = deadline.map_or(SLICE, |deadline| deadline.saturating_duration_since(Instant::now()));
-            let slice =
-                PollType::Wait { submission_index: submission_index.clone(), timeout: Some(left.min(SLICE)) };
-            if self.poll_once(slice)? {
-                return Ok(true);
-            }
-            if left.is_zero() {
-                return Ok(false);
-            }
-        }
+    /// In a browser it becomes ready by itself; elsewhere it needs somebody to poll the device, as [`Gpu::finish`] and the
+    /// engine do. Its error is [`Error::DeviceLost`], if the device was lost.
+    pub fn finished(&self) -> Finished {
+        Finished::new(self)
     }
 
     /// Submits what was recorded.
@@ -164,41 +190,5 @@ impl Gpu {
         // A submission looks after finished mappings, as polling does.
         let _alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         self.queue.submit([commands])
-    }
-
-    fn poll_once(&self, kind: PollType) -> Result<bool> {
-        // wgpu asserts that nobody else empties the queue while it polls: one thread at a time, for a slice of time.
-        let alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // It also panics where the driver reports a loss or is out of memory.
-        let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
-        drop(alone);
-        match polled {
-            Ok(Ok(status)) => match self.lost() {
-                Some(_) => Err(self.lost_error("")),
-                None => Ok(status.wait_finished()),
-            },
-            Ok(Err(wgpu::PollError::Timeout)) => Ok(false),
-            Ok(Err(error)) => Err(self.lost_error(error.to_string())),
-            Err(_) => Err(self.lost_error("the driver failed while it was waited for")),
-        }
-    }
-
-    /// Runs a kernel once, alone, on fresh buffers whose outputs are filled with [`POISON`].
-    ///
-    /// `inputs` are the kernel's, `outputs` the lengths of its results, and columns and rows what is computed. For tests
-    /// and comparisons.
-    ///
-    /// # Errors
-    /// [`Error::Kernel`] if the shader does not fit the kernel, [`Error::DeviceLost`] if the device was lost.
-    pub fn run_kernel(
-        &self,
-        kernel: &Kernel,
-        params: &[u8],
-        inputs: &[&[f32]],
-        outputs: &[usize],
-        [columns, rows]: [u32; 2],
-    ) -> Result<Vec<Vec<f32>>> {
-        let poison: Vec<Vec<f32>> = outputs.iter().map(|len| vec![POISON; *len]).collect();
-        executor::run_alone(self, kernel, params, inputs, poison, [columns, rows])
     }
 }

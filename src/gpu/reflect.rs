@@ -1,9 +1,13 @@
 //! What naga reads from a kernel's shader, and what it must find there. No GPU is needed for any of it.
 
+use std::borrow::Cow;
+
+use naga::back::pipeline_constants::process_overrides;
+use naga::valid::ModuleInfo;
 use naga::{AddressSpace, Expression, Function, GlobalVariable, Module, Statement, StorageAccess, TypeInner};
 
 use crate::error::{Error, Result};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Variant};
 
 /// Invocations of a workgroup that every GPU allows.
 const MAX_INVOCATIONS: u32 = 256;
@@ -17,7 +21,8 @@ pub(super) const TABLE: usize = 4096;
 pub struct Shape {
     /// Invocations of a workgroup in x and y.
     pub workgroup: [u32; 2],
-    /// Pixels of an invocation in x and y: the shader's constant `SPAN`.
+    /// Pixels of an invocation in x and y: the shader's constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be
+    /// `override` constants.
     pub span: [u32; 2],
     /// Channels that lie side by side and are worked on as one row: the shader's constant `SIDE_BY_SIDE`, or 1.
     pub side_by_side: u32,
@@ -33,49 +38,89 @@ impl Shape {
     }
 }
 
-/// Parses and validates a kernel's shader and holds it against the kernel's Rust side.
+/// [`reflect_variant`] of the kernel's default, which keeps every value that stands in the shader.
+///
+/// # Errors
+/// As [`reflect_variant`].
+pub fn reflect(kernel: &Kernel) -> Result<Shape> {
+    reflect_variant(kernel, &Variant::DEFAULT)
+}
+
+/// Parses and validates a kernel's shader, gives its `override` constants the variant's values, and compares it with the
+/// kernel's Rust side.
 ///
 /// Compared are the uniform struct (names, types, offsets, size), the bindings (names, order, kind, use), the workgroup
 /// (at most 256 invocations) and the loops (each one against a bound that the shader states).
 ///
 /// # Errors
-/// [`Error::Kernel`], with everything that was found wrong.
-pub fn reflect(kernel: &Kernel) -> Result<Shape> {
+/// [`Error::Kernel`], with everything that was found wrong. A constant that the shader does not declare is wrong, too.
+pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<Shape> {
     let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
     let module = naga::front::wgsl::parse_str(kernel.source)
         .map_err(|error| fail(error.emit_to_string_with_path(kernel.source, kernel.name)))?;
     let mut validator =
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
     let info = validator.validate(&module).map_err(|error| fail(error.emit_to_string(kernel.source)))?;
-
-    let mut problems = Vec::new();
     let [entry] = module.entry_points.as_slice() else {
         return Err(fail(format!("{} entry points, expected 1", module.entry_points.len())));
     };
+    let mut problems = Vec::new();
     if entry.name != "main" {
         problems.push(format!("entry point is {}, expected main", entry.name));
     }
+    let usage = info.get_entry_point(0);
+    let tables = check_bindings(kernel, &module, |handle| !usage[handle].is_empty(), &mut problems);
+
+    // What an override has no part in is read from the module as it was parsed: a resolved one has lost what it never uses.
+    let resolved = resolve(&module, &info, variant).map_err(fail)?;
+    let entry = &resolved.entry_points[0];
     let [x, y, z] = entry.workgroup_size;
     if z != 1 || x.saturating_mul(y) > MAX_INVOCATIONS {
         problems.push(format!(
             "workgroup is {x}×{y}×{z}, expected at most {MAX_INVOCATIONS} invocations and z = 1"
         ));
     }
-    let usage = info.get_entry_point(0);
-    let tables = check_bindings(kernel, &module, |handle| !usage[handle].is_empty(), &mut problems);
-    check_loops(&module, &entry.function, "main", &mut problems);
-    for (_, function) in module.functions.iter() {
-        check_loops(&module, function, function.name.as_deref().unwrap_or("a function"), &mut problems);
+    check_loops(&resolved, &entry.function, "main", &mut problems);
+    for (_, function) in resolved.functions.iter() {
+        check_loops(&resolved, function, function.name.as_deref().unwrap_or("a function"), &mut problems);
     }
-    let span = span(&module).unwrap_or_else(|| {
-        problems.push("constant SPAN is missing, expected a vec2u of pixels of an invocation".to_owned());
+    let number = |name: &str| number(&module, name).or_else(|| number(&resolved, name));
+    let pair = || Some([number("SPAN_X")?, number("SPAN_Y")?]);
+    let span = span(&module).or_else(pair).filter(|span| !span.contains(&0)).unwrap_or_else(|| {
+        problems.push(
+            "constant SPAN is missing, expected a vec2u of pixels of an invocation, or SPAN_X and SPAN_Y, each a u32"
+                .to_owned(),
+        );
         [1, 1]
     });
+    let side_by_side = number("SIDE_BY_SIDE").unwrap_or(1);
     if problems.is_empty() {
-        Ok(Shape { workgroup: [x, y], span, side_by_side: side_by_side(&module), tables })
+        Ok(Shape { workgroup: [x, y], span, side_by_side, tables })
     } else {
         Err(fail(problems.join("; ")))
     }
+}
+
+/// The module with each `override` constant replaced by its value.
+fn resolve<'a>(
+    module: &'a Module,
+    info: &'a ModuleInfo,
+    variant: &Variant,
+) -> Result<Cow<'a, Module>, String> {
+    let declared: Vec<&str> = module.overrides.iter().filter_map(|(_, o)| o.name.as_deref()).collect();
+    for (name, _) in variant.constants {
+        if !declared.contains(name) {
+            let declared = if declared.is_empty() { "none".to_owned() } else { declared.join(", ") };
+            return Err(format!(
+                "variant {} sets the constant {name}, expected an override of the shader: {declared}",
+                variant.name
+            ));
+        }
+    }
+    let values = variant.constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+    let (resolved, _) = process_overrides(module, info, None, &values)
+        .map_err(|error| format!("variant {}: {error}", variant.name))?;
+    Ok(resolved)
 }
 
 /// Holds the bindings against the kernel, and says which inputs are tables.
@@ -211,21 +256,23 @@ fn leaves_at_bound(module: &Module, function: &Function, statement: &Statement) 
     leaves && bounded
 }
 
-fn side_by_side(module: &Module) -> u32 {
-    let found = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("SIDE_BY_SIDE"));
-    match found.map(|(_, constant)| &module.global_expressions[constant.init]) {
-        Some(Expression::Literal(naga::Literal::U32(channels))) => *channels,
-        _ => 1,
+/// The value of a constant that is one `u32`.
+fn number(module: &Module, name: &str) -> Option<u32> {
+    let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name))?;
+    match module.global_expressions[constant.init] {
+        Expression::Literal(naga::Literal::U32(value)) => Some(value),
+        _ => None,
     }
 }
 
+/// The value of the constant `SPAN`, which is one `vec2u`.
 fn span(module: &Module) -> Option<[u32; 2]> {
     let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("SPAN"))?;
     let Expression::Compose { components, .. } = &module.global_expressions[constant.init] else {
         return None;
     };
     let value = |i: usize| match module.global_expressions[*components.get(i)?] {
-        Expression::Literal(naga::Literal::U32(value)) if value > 0 => Some(value),
+        Expression::Literal(naga::Literal::U32(value)) => Some(value),
         _ => None,
     };
     Some([value(0)?, value(1)?])

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::read::{check_length, header_size, pairs, read_file};
-use super::write::write_bytes;
+use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, UNKNOWN_FLOW};
 

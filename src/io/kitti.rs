@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::picture::{self, Decoded};
 use super::read::read_file;
-use super::write::write_bytes;
+use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, UNKNOWN_FLOW};
 

@@ -18,17 +18,15 @@ pub mod picture;
 mod raw;
 mod read;
 pub mod sequence;
-mod temporary;
-mod write;
 mod y4m;
 mod y4m_header;
 mod y4m_write;
 
+#[cfg(feature = "cli")]
+pub(crate) use crate::atomic_file::discard_and_exit;
+pub use crate::atomic_file::{check_creatable, check_writable, remove, write_atomic, write_bytes};
 pub use flow_file::{read_flow, write_flow};
 pub use frames::Frames;
 pub use raw::RawReader;
-#[cfg(feature = "cli")]
-pub(crate) use temporary::discard_and_exit;
-pub use write::{check_creatable, check_writable, remove, write_atomic, write_bytes};
 pub use y4m::Y4mReader;
 pub use y4m_write::Y4mWriter;

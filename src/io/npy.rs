@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::npy_header::Header;
 use super::read::{check_length, floats, header_size, pairs, read_file};
-use super::write::write_bytes;
+use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Plane, Size};
 

@@ -7,7 +7,7 @@ use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Limits};
 
 use super::read::{header_size, read_file};
-use super::write::write_bytes;
+use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Size};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::pattern::{Numbered, glob_matches};
-use super::temporary::folder;
+use crate::atomic_file::folder;
 use crate::error::{Error, Result};
 
 /// The files that an argument stands for.

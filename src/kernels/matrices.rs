@@ -34,6 +34,7 @@ kernel!(
         reason: "a place's fraction has 2⁻¹⁴ px at 641, and h sums products of two expansions and of the flow that \
                  may cancel: some hundred roundings of the largest",
     },
+    variants: { narrow: { WORKGROUP_X = 16 }, wide: { WORKGROUP_X = 64 } },
 );
 
 fn reference(

@@ -30,6 +30,7 @@ kernel!(
         of_largest: 16.0 * f32::EPSILON,
         reason: "a mean of values of either sign, fused or not: some roundings of the largest",
     },
+    variants: { wide: { WORKGROUP_X = 64 }, square: { WORKGROUP_X = 8, WORKGROUP_Y = 8 } },
 );
 
 fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32]) {

@@ -14,6 +14,8 @@ pub(crate) struct Ended {
 pub(crate) fn program(folder: &Path, args: &[&str]) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
     command.args(args).current_dir(folder).env_remove("XDG_RUNTIME_DIR").stdin(Stdio::null());
+    // A test leaves nothing in the user's folders.
+    command.env("VIEWSPHERE_CACHE", "");
     let output = command.output().unwrap_or_else(|error| panic!("{error}"));
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap_or_else(|error| panic!("{error}"));
     Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }

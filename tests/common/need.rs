@@ -37,7 +37,8 @@ fn shared_gpu() -> Result<Gpu, String> {
     static GPU: OnceLock<Result<Gpu, String>> = OnceLock::new();
     let open = || {
         let adapter = std::env::var("VIEWSPHERE_ADAPTER").ok();
-        let gpu = Gpu::new(&GpuOptions { adapter, allow_software: true }).map_err(|error| error.to_string());
+        let gpu = Gpu::new(&GpuOptions { adapter, allow_software: true, ..GpuOptions::default() })
+            .map_err(|error| error.to_string());
         if let Ok(gpu) = &gpu {
             say_once(format!("testing on {}", gpu.adapter()));
         }

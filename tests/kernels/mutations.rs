@@ -176,7 +176,7 @@ fn every_kernel_has_a_mistake_to_find() {
 fn a_row_never_stored_is_found_as_poison() {
     let Some(gpu) = need::gpu() else { return };
     let skips = mutant(&window_y::KERNEL, "at <= end", "at < end");
-    compare_sides(&gpu, &skips, |Compared { what, difference }| {
+    compare_sides(&gpu, &skips, |Compared { what, difference, .. }| {
         let worst = difference.worst.unwrap_or_else(|| panic!("{what}: nothing found"));
         assert_eq!(worst.found.to_bits(), compare::POISON.to_bits(), "{what}: {worst:?}");
         ControlFlow::Continue(())

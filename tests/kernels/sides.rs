@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use viewsphere::Result;
 use viewsphere::frame::Size;
-use viewsphere::gpu::Gpu;
+use viewsphere::gpu::{Gpu, Tuning};
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::compare::{Difference, POISON, compare};
 
@@ -12,20 +12,29 @@ use viewsphere::kernels::compare::{Difference, POISON, compare};
 pub(crate) const SIZES: [Size; 4] =
     [Size::new(1, 1), Size::new(7, 5), Size::new(65, 33), Size::new(641, 363)];
 
-/// One output of one case.
+/// One output of one case, by one variant of the shader.
 pub(crate) struct Compared {
-    /// Kernel, size, case and output.
+    /// Kernel, variant, size, case and output.
     pub(crate) what: String,
     /// How far the shader is from the reference.
     pub(crate) difference: Difference,
+    /// Whether the bits are those of the default variant.
+    pub(crate) as_default: bool,
 }
 
-/// Runs both sides on every case at every size, small ones first, until `seen` breaks off.
+/// Runs the reference and every variant of the shader on every case at every size, small ones first, until `seen` breaks
+/// off.
 pub(crate) fn compare_sides(
     gpu: &Gpu,
     kernel: &Kernel,
     mut seen: impl FnMut(Compared) -> ControlFlow<()>,
 ) -> Result<()> {
+    let mut variants = Vec::new();
+    for variant in kernel.variants {
+        let mut tuning = Tuning::default();
+        tuning.set(gpu.adapter().class, kernel, variant.name)?;
+        variants.push((variant.name, gpu.with_tuning(tuning)));
+    }
     for size in SIZES {
         for case in (kernel.cases)(size) {
             let inputs: Vec<&[f32]> = case.inputs.iter().map(Vec::as_slice).collect();
@@ -33,15 +42,24 @@ pub(crate) fn compare_sides(
             let mut outputs: Vec<&mut [f32]> = expected.iter_mut().map(Vec::as_mut_slice).collect();
             (kernel.reference)(&case.params, &inputs, &mut outputs);
             let extent = [case.extent.width, case.extent.height];
-            let found = gpu.run_kernel(kernel, &case.params, &inputs, &case.outputs, extent)?;
             let known: Vec<&[f32]> = expected.iter().map(Vec::as_slice).collect();
             let bounds = kernel.bounds(&case.params, &inputs, &known);
-            for (((name, expected), found), bound) in
-                kernel.outputs.iter().zip(&expected).zip(&found).zip(&bounds)
-            {
-                let what = format!("{} at {size}, {}: {name} of {}", kernel.name, case.name, case.extent);
-                if seen(Compared { what, difference: compare(expected, found, bound) }).is_break() {
-                    return Ok(());
+            let mut default = None;
+            for (variant, gpu) in &variants {
+                let found = gpu.run_kernel(kernel, &case.params, &inputs, &case.outputs, extent)?;
+                let default: &Vec<Vec<f32>> = default.get_or_insert_with(|| found.clone());
+                for (i, name) in kernel.outputs.iter().enumerate() {
+                    let (kernel, case, extent) = (kernel.name, &case.name, case.extent);
+                    let bits =
+                        |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+                    let compared = Compared {
+                        what: format!("{kernel}, {variant}, at {size}, {case}: {name} of {extent}"),
+                        difference: compare(&expected[i], &found[i], &bounds[i]),
+                        as_default: bits(&found[i]) == bits(&default[i]),
+                    };
+                    if seen(compared).is_break() {
+                        return Ok(());
+                    }
                 }
             }
         }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::backend::options;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
 use crate::camera::{Camera, Lens, View};
@@ -68,7 +69,7 @@ impl Crosscheck {
         }
         let (pair, name) = self.pair()?;
         let certainty = self.mask.as_ref().map(|path| input::plane(path, pair[0].size, &name)).transpose()?;
-        let gpu = Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })?;
+        let gpu = Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true, ..options() })?;
         print::note(format_args!("checking {}", gpu.adapter()));
         let plan = match self.sphere {
             true => sphere_plan(&algorithm, &pair[0], certainty.as_ref())?,

@@ -1,10 +1,16 @@
 //! Files that are whole or not there: written beside their place, then renamed into it.
 
+mod temporary;
+
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use super::temporary::{self, Temporary};
+use temporary::Temporary;
+#[cfg(feature = "cli")]
+pub(crate) use temporary::discard_and_exit;
+pub(crate) use temporary::folder;
+
 use crate::error::{Error, Result};
 
 /// Writes a file so that `path` holds either its old content or all of the new one, never a part.
