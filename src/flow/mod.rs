@@ -115,6 +115,7 @@ macro_rules! estimators {
 estimators!(
     ($)
     farneback: Farneback,
+    lucas_kanade: LucasKanade,
 );
 
 pub use farneback::{Outside, Update, Window};
