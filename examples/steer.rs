@@ -7,7 +7,7 @@ use viewsphere::sim::flight::FlightConfig;
 use viewsphere::sim::vehicle::{
     CoordinatedTurn, GyroErrors, GyroModel, STEP_S, Start, TurnParams, Vehicle, Wind,
 };
-use viewsphere::sim::{CourseKind, RayTable, render};
+use viewsphere::sim::{CourseKind, RayTable, reference_render};
 use viewsphere::steer::{Goal, Observation, SteerConfig, Steering, View};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
@@ -31,7 +31,7 @@ fn main() -> viewsphere::Result<()> {
     while course.progress_m(aircraft.state().position_ned_m) < course.length_m {
         let state = aircraft.state();
         pipeline.push_gyro(sensor.sample(&state));
-        let view = render(&course.world, &rays, &state.camera_pose());
+        let view = reference_render(&course.world, &rays, &state.camera_pose());
         let cue = pipeline.process(&view.image.frame()?, state.time_s)?;
         let decision = steering.update(&Observation {
             time_s: state.time_s,

@@ -25,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let stride = (params.width + 3u) / 4u * 4u;
     let upper = samples(2u * (y.x * stride + x));
     let lower = samples(2u * (y.y * stride + x));
-    var seen = Seen(vec4f(FAR), vec4f());
+    var seen = Samples(vec4f(FAR), vec4f());
     var below = seen;
     let tile = tiles[y.x / TILE.y * params.tiles + x / TILE.x];
     let first_box = u32(tile.x);
@@ -79,7 +79,7 @@ struct Rays {
     z: vec4f,
 }
 
-struct Seen {
+struct Samples {
     distance: vec4f,
     id: vec4f,
 }
@@ -92,7 +92,7 @@ fn along(d: Rays, row: vec4f) -> vec4f {
     return select(l, vec4f(1e-12), abs(l) < vec4f(1e-12));
 }
 
-fn cuboid(d: Rays, x: vec4f, y: vec4f, z: vec4f, half: vec3f, base: f32, seen: Seen) -> Seen {
+fn cuboid(d: Rays, x: vec4f, y: vec4f, z: vec4f, half: vec3f, base: f32, seen: Samples) -> Samples {
     let lx = along(d, x);
     let ly = along(d, y);
     let lz = along(d, z);
@@ -121,10 +121,10 @@ fn cuboid(d: Rays, x: vec4f, y: vec4f, z: vec4f, half: vec3f, base: f32, seen: S
     let side = select(vec4f(), vec4f(1.0), (l > vec4f()) != outside);
     // What has no height has one face.
     let face = select(axis + side, vec4f(), vec4<bool>(half.z == 0.0));
-    return Seen(select(seen.distance, distance, hit), select(seen.id, base + face + 1.0, hit));
+    return Samples(select(seen.distance, distance, hit), select(seen.id, base + face + 1.0, hit));
 }
 
-fn cylinder(d: Rays, x: vec4f, y: vec4f, z: vec4f, size: vec2f, base: f32, seen: Seen) -> Seen {
+fn cylinder(d: Rays, x: vec4f, y: vec4f, z: vec4f, size: vec2f, base: f32, seen: Samples) -> Samples {
     let lx = along(d, x);
     let ly = along(d, y);
     let lz = along(d, z);
@@ -149,5 +149,5 @@ fn cylinder(d: Rays, x: vec4f, y: vec4f, z: vec4f, size: vec2f, base: f32, seen:
     let mantle = distance == select(far, near, outside);
     let lid = select(vec4f(1.0), vec4f(2.0), (lz > vec4f()) != outside);
     let face = select(lid, vec4f(), mantle);
-    return Seen(select(seen.distance, distance, hit), select(seen.id, base + face + 1.0, hit));
+    return Samples(select(seen.distance, distance, hit), select(seen.id, base + face + 1.0, hit));
 }

@@ -15,8 +15,8 @@ struct Params {
 @group(0) @binding(1) var<storage, read> flow: array<f32>;      // from the current frame back to the one before, pixels
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>;
 @group(0) @binding(3) var<storage, read> certainty: array<f32>; // of the current frame's pixels
-@group(0) @binding(4) var<storage, read> trust: array<f32>;     // of the cells
-@group(0) @binding(5) var<storage, read_write> cells: array<f32>; // channels: trust, x, y, dx/dt, dy/dt
+@group(0) @binding(4) var<storage, read> confidence: array<f32>;     // of the cells
+@group(0) @binding(5) var<storage, read_write> cells: array<f32>; // channels: confidence, x, y, dx/dt, dy/dt
 
 const SPAN = vec2u(1u, 1u);
 const MAX_SIDE = 64u;
@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let shift = vec3f(select(vec2f(), d, known) / params.focal, 0.0);
             let unturned = current + shift;
             let previous = turned_back(unturned);
-            let seen = sighting(current, previous, -shift - (previous - unturned));
+            let seen = midpoint_flow(current, previous, -shift - (previous - unturned));
             let m = seen.midpoint;
             // What lies beside or behind the camera has no place in the pinhole's plane.
             let w = select(0.0, certainty[at.y * stride + at.x], known && m.z > 0.01);
@@ -56,7 +56,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x < out_stride && id.y < params.rows {
         let at = 5u * id.y * out_stride + id.x;
         let known = weight > 1e-3;
-        cells[at] = select(0.0, trust[cell.y * out_stride + cell.x], known);
+        cells[at] = select(0.0, confidence[cell.y * out_stride + cell.x], known);
         cells[at + out_stride] = select(0.0, place.x * share, known);
         cells[at + 2u * out_stride] = select(0.0, place.y * share, known);
         cells[at + 3u * out_stride] = select(0.0, rate.x * share, known);

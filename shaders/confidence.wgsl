@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 fn store(four: u32, y: u32, evidence: Five) {
     let stride = (params.width + 3u) / 4u;
-    let value = trusted(evidence.a, evidence.b, evidence.c, evidence.d, evidence.e);
+    let value = confidence_of(evidence.a, evidence.b, evidence.c, evidence.d, evidence.e);
     if four < stride && y < params.height {
         confidence[y * stride + four] = repeat_last(value, 4u * four, params.width);
     }

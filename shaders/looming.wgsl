@@ -8,13 +8,13 @@ struct Params {
     pitch: vec2f,      // from one cell to the next, in the pinhole's plane
     origin: vec2f,     // the first cell's centre there
     noise: f32,        // of a trusted cell's rate, a frame, in the pinhole's plane
-    least_trust: f32,
+    least_confidence: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> cells: array<f32>; // channels: trust, x, y, dx/dt, dy/dt
+@group(0) @binding(1) var<storage, read> cells: array<f32>; // channels: confidence, x, y, dx/dt, dy/dt
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>; // the last: direction of motion, its standard error
-@group(0) @binding(3) var<storage, read_write> looming: array<f32>; // channels: N, div, standard error of N, trust
+@group(0) @binding(3) var<storage, read_write> looming: array<f32>; // channels: N, div, standard error of N, confidence
 
 const SPAN = vec2u(1u, 1u);
 const MAX_SIDE = 33u;
@@ -45,8 +45,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let at = cell + vec2u(i, j) - params.radius;
             let there = at.x < params.columns && at.y < params.rows;
             let base = select(0u, 5u * at.y * stride + at.x, there);
-            let trust = cells[base];
-            let w = select(0.0, trust, there && trust >= params.least_trust);
+            let confidence = cells[base];
+            let w = select(0.0, confidence, there && confidence >= params.least_confidence);
             let place = vec2f(cells[base + stride], cells[base + 2u * stride]);
             let r = vec2f(cells[base + 3u * stride], cells[base + 4u * stride]);
             let x = place - origin;
@@ -107,13 +107,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let total = far_variance + growth_variance;
     let nearness_rate = (far * growth_variance + growth * far_variance) / max(total, 1e-30);
     let error = sqrt(far_variance * growth_variance / max(total, 1e-30));
-    let trust = sum / f32(side * side);
+    let confidence = sum / f32(side * side);
     if id.x < stride && id.y < params.rows {
         let at = 4u * id.y * stride + id.x;
         looming[at] = select(0.0, nearness_rate, enough);
         looming[at + stride] = select(0.0, divergence, enough);
         looming[at + 2u * stride] = select(0.0, error, enough);
-        looming[at + 3u * stride] = select(0.0, trust, enough);
+        looming[at + 3u * stride] = select(0.0, confidence, enough);
     }
 }
 

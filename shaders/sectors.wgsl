@@ -4,16 +4,16 @@ struct Params {
     columns: u32,
     rows: u32,
     cell_columns: u32,
-    least_trust: f32,
+    least_confidence: f32,
     quantile: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> cells: array<f32>;   // channels: trust, x, y, dx/dt, dy/dt
-@group(0) @binding(2) var<storage, read> looming: array<f32>; // channels: N, div, standard error of N, trust
+@group(0) @binding(1) var<storage, read> cells: array<f32>;   // channels: confidence, x, y, dx/dt, dy/dt
+@group(0) @binding(2) var<storage, read> looming: array<f32>; // channels: N, div, standard error of N, confidence
 @group(0) @binding(3) var<storage, read> ranges: array<vec2f>; // of members: first and count, sector by sector
 @group(0) @binding(4) var<storage, read> members: array<f32>; // cells, by their number
-// Channels: coverage, N low, median and high, div, trust, F (3), Σw n nᵀ (xx, xy, xz, yy, yz, zz), standard error of N.
+// Channels: coverage, N low, median and high, div, confidence, F (3), Σw n nᵀ (xx, xy, xz, yy, yz, zz), standard error of N.
 @group(0) @binding(5) var<storage, read_write> sectors: array<f32>;
 
 const SPAN = vec2u(1u, 1u);
@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let first = u32(range.x);
     let count = u32(range.y);
     var valid = 0u;
-    var trust = 0.0;
+    var confidence = 0.0;
     var error = 0.0;
     var flow = vec3f();
     var along = vec3f();  // moment xx, yy, zz
@@ -35,14 +35,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var k = 0u; k < min(count, MAX_MEMBERS); k++) {
         let at = place(u32(members[first + k]));
         let w = looming[at.y + 3u * at.z];
-        let known = w >= params.least_trust;
+        let known = w >= params.least_confidence;
         let sight = normalize(vec3f(cells[at.x + at.z], cells[at.x + 2u * at.z], 1.0));
         let rate = vec3f(cells[at.x + 3u * at.z], cells[at.x + 4u * at.z], 0.0);
         let f = (rate - sight * dot(sight, rate)) * sight.z;
         let normal = cross(sight, f);
         let share = select(0.0, w, known);
         valid += select(0u, 1u, known);
-        trust += share;
+        confidence += share;
         error += share * looming[at.y + 2u * at.z];
         flow += share * f;
         along += share * normal * normal;
@@ -55,14 +55,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let stride = (params.columns + 3u) / 4u * 4u;
     if id.x < stride && id.y < params.rows {
         let known = valid > 0u;
-        let share = 1.0 / max(trust, 1e-20);
+        let share = 1.0 / max(confidence, 1e-20);
         let out = 16u * id.y * stride + id.x;
         sectors[out] = f32(valid) / f32(max(count, 1u));
         sectors[out + stride] = select(0.0, value(found.x), known);
         sectors[out + 2u * stride] = select(0.0, value(found.y), known);
         sectors[out + 3u * stride] = select(0.0, value(found.z), known);
         sectors[out + 4u * stride] = select(0.0, value(found.w), known);
-        sectors[out + 5u * stride] = trust / f32(max(valid, 1u));
+        sectors[out + 5u * stride] = confidence / f32(max(valid, 1u));
         sectors[out + 6u * stride] = flow.x * share;
         sectors[out + 7u * stride] = flow.y * share;
         sectors[out + 8u * stride] = flow.z * share;
@@ -114,7 +114,7 @@ struct Keys {
 fn keys_of(member: u32) -> Keys {
     let at = place(u32(members[member]));
     let n = key(looming[at.y]);
-    let known = looming[at.y + 3u * at.z] >= params.least_trust;
+    let known = looming[at.y + 3u * at.z] >= params.least_confidence;
     return Keys(vec4u(n, n, n, key(max(looming[at.y + at.z], 0.0))), known);
 }
 

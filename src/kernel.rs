@@ -35,7 +35,7 @@ pub struct Kernel {
 }
 
 /// A named set of values for a shader's `override` constants, such as a workgroup's size. A variant changes how the work
-/// is shared out, not what is computed: every one is held within the kernel's tolerance.
+/// is shared out, not what is computed: every one is clamped to the kernel's tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variant {
     /// The name, for a [`Tuning`](crate::gpu::Tuning), messages and tests.

@@ -41,7 +41,15 @@
 //! | `cli` (default) | the command line, with all of these |
 //! | `metal`, `dx12`, `gles` | wgpu's other back ends; Vulkan is always there |
 
-#[cfg_attr(not(feature = "io"), allow(dead_code, reason = "only compiled kernels are kept then"))]
+#[cfg_attr(
+    not(feature = "io"),
+    allow(
+        dead_code,
+        unused_imports,
+        unreachable_pub,
+        reason = "without files, only compiled kernels are kept"
+    )
+)]
 mod atomic_file;
 mod backend;
 pub mod camera;
@@ -80,7 +88,7 @@ pub mod wire;
 pub use glam;
 
 pub use backend::Backend;
-pub use engine::{Config, Engine, Extras, Output, OwnedOutput};
+pub use engine::{Config, Engine, FrameInputs, Output, OwnedOutput};
 pub use error::{Error, Result};
 pub use pipeline::{Cue, OwnedCue, Pipeline, PipelineConfig};
 pub use stream::{OnLoss, StreamConfig, Ticket};

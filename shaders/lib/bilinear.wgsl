@@ -9,23 +9,23 @@ struct Between {
     fraction: vec2f,
 }
 
-// The four pixels around a place, which is held within the frame. What is not a number is held at 0.
+// The four pixels around a place, which is clamped to the frame. NaN becomes 0.
 fn between(place: vec2f) -> Between {
     let stride = (params.in_width + 3u) / 4u * 4u;
     let last = vec2f(f32(params.in_width - 1u), f32(params.in_height - 1u));
-    let held = hold(place, last);
-    let whole = floor(held);
+    let clamped = clamp_to_frame(place, last);
+    let whole = floor(clamped);
     let at = vec2u(whole);
     return Between(
         at.x,
         min(at.x + 1u, params.in_width - 1u),
         at.y * stride,
         min(at.y + 1u, params.in_height - 1u) * stride,
-        held - whole,
+        clamped - whole,
     );
 }
 
-// A place held within 0 to last.
-fn hold(place: vec2f, last: vec2f) -> vec2f {
+// A place clamped to the range 0 to last.
+fn clamp_to_frame(place: vec2f, last: vec2f) -> vec2f {
     return select(vec2f(), min(place, last), place > vec2f());
 }

@@ -17,7 +17,7 @@ fn reflect_101(i: i32, n: i32) -> u32 {
     return u32(select(min(j, period - j), 0, n == 1));
 }
 
-// Index i held within a row of n samples.
+// Index i clamped to a row of n samples.
 fn clamp_index(i: i32, n: u32) -> u32 {
     return u32(clamp(i, 0, i32(n) - 1));
 }

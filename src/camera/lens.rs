@@ -1,6 +1,6 @@
 //! The lens: Brown's model with the rational extension, and its inverse.
 
-use super::fold;
+use super::injectivity;
 use crate::error::{Error, Result};
 
 /// An inverse is accepted if it maps back to within this of where it came from, relative to 1 + the distance from the
@@ -84,18 +84,18 @@ impl Lens {
     /// has a factor q whose denominator is not positive, or so close to a root that the formula stretches the picture
     /// more than four times. `false` for what is not a finite number.
     pub fn is_one_to_one_to(&self, radius: f64) -> bool {
-        *self == Self::NONE && radius.is_finite() || fold::is_one_to_one(&self.named(), radius)
+        *self == Self::NONE && radius.is_finite() || injectivity::is_one_to_one(&self.named(), radius)
     }
 
     /// The distance from the axis (the tangent of the angle to it) up to which the lens is one to one, or that of 89.9°
     /// if it is so further on.
     pub fn radius_limit(&self) -> f64 {
-        fold::limit(&self.named())
+        injectivity::limit(&self.named())
     }
 
     /// The distance from the axis of the denominator's first root, if there is one within 89.9°.
     pub(super) fn denominator_root(&self) -> Option<f64> {
-        fold::denominator_root(&self.named())
+        injectivity::denominator_root(&self.named())
     }
 
     pub(super) fn named(&self) -> Named {

@@ -5,16 +5,16 @@
 //! `io`.
 
 mod check;
-mod fold;
+mod framing;
+mod injectivity;
 mod lens;
 mod pose;
-mod view;
 
 use glam::{DMat3, DVec3};
 
+pub use framing::Framing;
 pub use lens::Lens;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
-pub use view::View;
 
 use crate::frame::Size;
 
@@ -61,7 +61,7 @@ impl Camera {
     }
 
     /// Where this camera shows what another one, turned against it, shows at a pixel: the map of the kernel
-    /// [`crate::kernels::lens_map`], in `f64`.
+    /// [`crate::kernels::undistort_map`], in `f64`.
     pub fn place_of(&self, other: &Self, this_from_other: &DMat3, pixel: [f64; 2]) -> Option<[f64; 2]> {
         self.project(*this_from_other * other.ray(pixel)?)
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::backend::BackendArgs;
-use super::eval::Figures;
+use super::eval::FlowErrorFigures;
 use super::flow::gray;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
@@ -55,7 +55,7 @@ struct Report {
     backend: String,
     width: u32,
     height: u32,
-    accuracy: Figures,
+    accuracy: FlowErrorFigures,
     median_ms: f64,
     max_ms: f64,
     fps: f64,

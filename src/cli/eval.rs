@@ -36,7 +36,7 @@ pub(super) struct Eval {
 
 /// [`FlowError`] as it is printed.
 #[derive(Serialize)]
-pub(super) struct Figures {
+pub(super) struct FlowErrorFigures {
     aee_px: f64,
     aee_std_px: f64,
     aae_deg: f64,
@@ -48,7 +48,7 @@ pub(super) struct Figures {
     pixels: usize,
 }
 
-impl From<FlowError> for Figures {
+impl From<FlowError> for FlowErrorFigures {
     fn from(e: FlowError) -> Self {
         Self {
             aee_px: e.aee_px,
@@ -78,7 +78,7 @@ impl Eval {
             return Err(Error::format(&self.estimate, "number of pixels compared", found, "at least 1"));
         }
         if self.json {
-            print::json(&Figures::from(error))?;
+            print::json(&FlowErrorFigures::from(error))?;
         } else {
             let e = &error;
             print::text(&format!(

@@ -104,7 +104,7 @@ pub(super) struct Simulate {
 
 /// What is said at the end.
 #[derive(Serialize)]
-struct Summary {
+struct SimulateSummary {
     folder: PathBuf,
     world: String,
     seed: u64,
@@ -208,7 +208,7 @@ impl Simulate {
     }
 
     fn say(&self, world: &str, config: &DataSetConfig, written: &DataSetSummary) -> Result<()> {
-        let summary = Summary {
+        let summary = SimulateSummary {
             folder: self.output.clone(),
             world: world.to_owned(),
             seed: self.seed,

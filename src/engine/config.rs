@@ -12,11 +12,11 @@ pub struct Config {
     pub algorithm: Algorithm,
     /// How the frames' pixels are stored.
     pub format: PixelFormat,
-    /// Whether frames may come with a certainty of their pixels ([`Extras::certainty`]).
+    /// Whether frames may come with a certainty of their pixels ([`FrameInputs::certainty`]).
     pub certainty: bool,
     /// Whether the confidence of the flow is computed and brought to the host.
     pub confidence: bool,
-    /// Whether an initial flow may come with a frame ([`Extras::initial_flow`]).
+    /// Whether an initial flow may come with a frame ([`FrameInputs::initial_flow`]).
     pub initial_flow: bool,
     /// Whether a pair without an initial flow of its own begins with the flow of the previous pair, in place of no motion.
     pub warm_start: bool,
@@ -64,7 +64,7 @@ impl Config {
 
 /// What may come with a frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Extras<'a> {
+pub struct FrameInputs<'a> {
     /// How far each pixel is to be trusted, 0 to 1. Values outside are clamped, and NaN is 0. Needs
     /// [`Config::certainty`]; a frame without one is trusted everywhere.
     pub certainty: Option<&'a Plane>,

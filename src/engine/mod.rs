@@ -7,7 +7,7 @@ mod config;
 
 use std::time::Duration;
 
-pub use config::{Config, Extras};
+pub use config::{Config, FrameInputs};
 
 use crate::backend::Backend;
 use crate::error::{Error, Result};
@@ -97,17 +97,17 @@ impl Engine {
     /// [`Error::SizeMismatch`] and [`Error::PixelFormat`] for a frame of another kind than the stream's; otherwise as
     /// [`Stream::submit`].
     pub fn submit(&mut self, frame: &Frame<'_>) -> Result<Ticket> {
-        self.submit_with(frame, &Extras::default())
+        self.submit_with(frame, &FrameInputs::default())
     }
 
     /// Takes a frame and what comes with it. See [`Engine::submit`].
     ///
     /// # Errors
-    /// As [`Engine::submit`]; also [`Error::Parameter`] for an extra that the configuration does not provide for, and
+    /// As [`Engine::submit`]; also [`Error::Parameter`] for an input that the configuration does not provide for, and
     /// [`Error::Length`] or [`Error::SizeMismatch`] for one that does not fit the frame.
-    pub fn submit_with(&mut self, frame: &Frame<'_>, extras: &Extras<'_>) -> Result<Ticket> {
-        self.check(extras)?;
-        self.stream.submit(&given(frame, extras), ())
+    pub fn submit_with(&mut self, frame: &Frame<'_>, frame_inputs: &FrameInputs<'_>) -> Result<Ticket> {
+        self.check(frame_inputs)?;
+        self.stream.submit(&given(frame, frame_inputs), ())
     }
 
     /// Whether a frame is done. See [`Stream::poll`].
@@ -131,16 +131,20 @@ impl Engine {
     /// # Errors
     /// As [`Engine::submit`] and [`Engine::wait`]. A frame that is late is given up and counted as dropped.
     pub fn process(&mut self, frame: &Frame<'_>) -> Result<Option<Output<'_>>> {
-        self.process_with(frame, &Extras::default())
+        self.process_with(frame, &FrameInputs::default())
     }
 
     /// Submits a frame and what comes with it, and waits for it.
     ///
     /// # Errors
     /// As [`Engine::submit_with`] and [`Engine::wait`]. A frame that is late is given up and counted as dropped.
-    pub fn process_with(&mut self, frame: &Frame<'_>, extras: &Extras<'_>) -> Result<Option<Output<'_>>> {
-        self.check(extras)?;
-        Ok(Output::of(self.stream.process(&given(frame, extras), ())?))
+    pub fn process_with(
+        &mut self,
+        frame: &Frame<'_>,
+        frame_inputs: &FrameInputs<'_>,
+    ) -> Result<Option<Output<'_>>> {
+        self.check(frame_inputs)?;
+        Ok(Output::of(self.stream.process(&given(frame, frame_inputs), ())?))
     }
 
     /// Begins the stream anew: the next frame is a first frame, and a warm start forgets. Frames in flight stay valid.
@@ -148,12 +152,12 @@ impl Engine {
         self.stream.reset();
     }
 
-    fn check(&self, extras: &Extras<'_>) -> Result<()> {
+    fn check(&self, frame_inputs: &FrameInputs<'_>) -> Result<()> {
         let plan = self.stream.plan();
-        if extras.certainty.is_some() && plan.input("certainty").is_none() {
+        if frame_inputs.certainty.is_some() && plan.input("certainty").is_none() {
             return Err(Error::parameter("certainty", "given", "none, as Config::certainty is off"));
         }
-        if extras.initial_flow.is_some() && plan.input("initial_flow").is_none() {
+        if frame_inputs.initial_flow.is_some() && plan.input("initial_flow").is_none() {
             let expected = "none, as Config::initial_flow and Config::warm_start are off";
             return Err(Error::parameter("initial_flow", "given", expected));
         }
@@ -201,10 +205,10 @@ impl Engine {
     }
 }
 
-fn given<'a>(frame: &'a Frame<'a>, extras: &Extras<'a>) -> [crate::plan::Given<'a>; 3] {
+fn given<'a>(frame: &'a Frame<'a>, frame_inputs: &FrameInputs<'a>) -> [crate::plan::Given<'a>; 3] {
     [
         ("frame", Some(Value::Frame(frame))),
-        ("certainty", extras.certainty.map(Value::Plane)),
-        ("initial_flow", extras.initial_flow.map(Value::Flow)),
+        ("certainty", frame_inputs.certainty.map(Value::Plane)),
+        ("initial_flow", frame_inputs.initial_flow.map(Value::Flow)),
     ]
 }

@@ -1,7 +1,7 @@
 //! Coarse to fine: the flow of each level of a pyramid, begun with that of the coarser one.
 
 use super::{Level, Wanted};
-use crate::kernels::{area, tables, upsample};
+use crate::kernels::{downsample_flow, tables, upsample};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The buffers of the flow on each level, and how the coarser level's is read.
@@ -133,9 +133,9 @@ impl CoarseToFine {
     fn reduce(&self, k: usize, level: &FlowLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
         let (size, finest) = (level.level.size, self.levels[0].level.size);
         Step::new(
-            &area::KERNEL,
+            &downsample_flow::KERNEL,
             format!("level {k}"),
-            area::Params {
+            downsample_flow::Params {
                 width: size.width,
                 height: size.height,
                 in_width: finest.width,

@@ -11,7 +11,7 @@ use super::pyramid::Pyramid;
 use super::{Estimator, Evidence, Level, Stages, Wanted, levels};
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::kernels::{advance, confidence, gradient_equations, tables, unweight, warp, weigh, window_y};
+use crate::kernels::{solve_increment, confidence, gradient_equations, tables, unweight, warp, premultiply, window_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Parameters of dense pyramidal Lucas–Kanade flow.
@@ -207,9 +207,9 @@ impl Stages for LucasKanadeStages {
         let size = self.levels[0].size;
         let [full, share] = weighted.full;
         steps.push(Step::new(
-            &weigh::KERNEL,
+            &premultiply::KERNEL,
             "frame",
-            weigh::Params { width: size.width, height: size.height },
+            premultiply::Params { width: size.width, height: size.height },
             &[gray, certainty],
             &[(full, Shape::planar(size, 1)), (share, Shape::planar(size, 1))],
         ));
@@ -233,9 +233,9 @@ impl Stages for LucasKanadeStages {
         let mut steps = self.coarse_to_fine.steps(self.iterations, initial, flow, |steps, iteration| {
             let Iteration { k, level, label, so_far, flow } = iteration;
             self.equations(steps, k, &label, slots, so_far, 0);
-            let params = advance::Params { width: level.size.width, height: level.size.height, radius: self.radius };
+            let params = solve_increment::Params { width: level.size.width, height: level.size.height, radius: self.radius };
             let inputs = [self.columns, self.window_x, so_far];
-            steps.push(Step::new(&advance::KERNEL, label, params, &inputs, &[(flow, Shape::planar(level.size, 2))]));
+            steps.push(Step::new(&solve_increment::KERNEL, label, params, &inputs, &[(flow, Shape::planar(level.size, 2))]));
         });
         if let Some(plane) = self.confidence {
             self.equations(&mut steps, 0, "confidence", slots, flow, 1);

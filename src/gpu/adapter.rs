@@ -20,8 +20,8 @@ pub struct GpuOptions {
     /// A folder that keeps the driver's compiled code from one process to the next, where the adapter can
     /// (`Features::PIPELINE_CACHE`); it is made when it is needed. None, the default, writes nothing. Native only.
     ///
-    /// It must be a folder that only the user can write into: drivers trust what they once have compiled. A file in it that
-    /// is damaged or of another driver is replaced, and a folder that cannot be written into is no error.
+    /// It must be a folder that only the user can write into: drivers confidence what they once have compiled. A file
+    /// in it that is damaged or of another driver is replaced, and a folder that cannot be written into is no error.
     pub pipeline_cache: Option<PathBuf>,
     /// Which variant of each kernel the adapter runs: by default each one's first.
     pub tuning: Tuning,

@@ -24,7 +24,7 @@ use disk_cache::DiskCache;
 pub use executor::GpuExecutor;
 pub use finished::Finished;
 use pipelines::Pipelines;
-pub use reflect::{Shape, reflect, reflect_variant};
+pub use reflect::{DispatchShape, reflect, reflect_variant};
 pub use tuning::{AdapterClass, Tuning};
 use wgpu::{Device, Features, Limits, Queue};
 

@@ -15,7 +15,7 @@ use crate::kernel::{Kernel, Layout, Variant};
 #[derive(Clone)]
 pub(super) struct Pipeline {
     pub(super) pipeline: ComputePipeline,
-    pub(super) shape: reflect::Shape,
+    pub(super) shape: reflect::DispatchShape,
 }
 
 /// The pipelines of a device. They are kept as long as the device.

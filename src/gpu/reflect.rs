@@ -18,7 +18,7 @@ pub(super) const TABLE: usize = 4096;
 
 /// What the host needs to know of a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
+pub struct DispatchShape {
     /// Invocations of a workgroup in x and y.
     pub workgroup: [u32; 2],
     /// Pixels of an invocation in x and y: the shader's constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be
@@ -30,7 +30,7 @@ pub struct Shape {
     pub tables: u8,
 }
 
-impl Shape {
+impl DispatchShape {
     /// Workgroups for a picture of this many columns and rows.
     pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 3] {
         let count = |pixels: u32, axis: usize| pixels.div_ceil(self.workgroup[axis] * self.span[axis]);
@@ -42,7 +42,7 @@ impl Shape {
 ///
 /// # Errors
 /// As [`reflect_variant`].
-pub fn reflect(kernel: &Kernel) -> Result<Shape> {
+pub fn reflect(kernel: &Kernel) -> Result<DispatchShape> {
     reflect_variant(kernel, &Variant::DEFAULT)
 }
 
@@ -54,7 +54,7 @@ pub fn reflect(kernel: &Kernel) -> Result<Shape> {
 ///
 /// # Errors
 /// [`Error::Kernel`], with everything that was found wrong. A constant that the shader does not declare is wrong, too.
-pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<Shape> {
+pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchShape> {
     let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
     let module = naga::front::wgsl::parse_str(kernel.source)
         .map_err(|error| fail(error.emit_to_string_with_path(kernel.source, kernel.name)))?;
@@ -95,7 +95,7 @@ pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<Shape> {
     });
     let side_by_side = number("SIDE_BY_SIDE").unwrap_or(1);
     if problems.is_empty() {
-        Ok(Shape { workgroup: [x, y], span, side_by_side, tables })
+        Ok(DispatchShape { workgroup: [x, y], span, side_by_side, tables })
     } else {
         Err(fail(problems.join("; ")))
     }

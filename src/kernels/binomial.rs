@@ -1,7 +1,7 @@
 //! A picture smoothed by `[1 2 1]/4` in both directions, mirrored at the border: the finest level of the pyramid.
 
-use super::cases::{Fill, gray_cases};
-use super::rows::{Split, bands, dimensions, reflect_101, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
+use super::test_inputs::{Fill, gray_cases};
 use crate::frame::Size;
 use crate::kernel::{Tolerance, kernel, params};
 

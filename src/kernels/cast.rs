@@ -4,9 +4,9 @@
 //! more on its positive side, of a cylinder 0 for the mantle, 1 and 2 for the lids, 0 else. A tile's surfaces come
 //! nearest first, boxes and then cylinders, so that one may stop at the first that is further away than all that was met.
 
-use super::facet_cases::scene;
-use super::facets::{FACET, LANES, Lanes, OFFSETS, RAY, TILE, least, most, pick};
-use super::rows::{Split, bands, dimensions};
+use super::parallel_rows::{Split, bands, dimensions};
+use super::surface_inputs::surface_inputs;
+use super::surface_layout::{LANES, Lanes, OFFSETS, RAY, SURFACE_LEN, TILE, least, most, pick};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -45,7 +45,7 @@ struct Sample {
 
 fn reference(p: &Params, rays: &[f32], surfaces: &[f32], tiles: &[f32], members: &[f32], ids: &mut [f32]) {
     let (width, _, stride) = dimensions(p.width, p.height);
-    let (tiles, facets) = (tiles.as_chunks::<4>().0, surfaces[4..].as_chunks::<FACET>().0);
+    let (tiles, records) = (tiles.as_chunks::<4>().0, surfaces[4..].as_chunks::<SURFACE_LEN>().0);
     bands(ids, &mut [], Split { dearer: 64, ..Split::rows_of(4 * stride) }, #[inline(always)] |band| {
         for (i, row) in band.out.chunks_exact_mut(4 * stride).enumerate() {
             let y = band.y0 + i;
@@ -55,18 +55,18 @@ fn reference(p: &Params, rays: &[f32], surfaces: &[f32], tiles: &[f32], members:
                 let mut samples = OFFSETS.map(|offset| sample(&rays[first..width.min(first + LANES)], offset));
                 let tile = tiles[y / TILE[1] * p.tiles as usize + tile_x].map(|value| value as usize);
                 for member in &members[tile[0]..tile[0] + tile[1]] {
-                    let (index, facet) = (*member, &facets[*member as usize]);
-                    if hidden(&samples, facet) {
+                    let (index, record) = (*member, &records[*member as usize]);
+                    if hidden(&samples, record) {
                         break;
                     }
-                    samples.iter_mut().for_each(|sample| cuboid(sample, facet, 8.0 * index));
+                    samples.iter_mut().for_each(|sample| cuboid(sample, record, 8.0 * index));
                 }
                 for member in &members[tile[2]..tile[2] + tile[3]] {
-                    let (index, facet) = (*member, &facets[*member as usize]);
-                    if hidden(&samples, facet) {
+                    let (index, record) = (*member, &records[*member as usize]);
+                    if hidden(&samples, record) {
                         break;
                     }
-                    samples.iter_mut().for_each(|sample| cylinder(sample, facet, 8.0 * index));
+                    samples.iter_mut().for_each(|sample| cylinder(sample, record, 8.0 * index));
                 }
                 for (lane, out) in out.chunks_exact_mut(4).enumerate() {
                     // The surplus repeats the last pixel, as its rays do.
@@ -94,27 +94,27 @@ fn sample(rays: &[[f32; RAY]], [right, down]: [f32; 2]) -> Sample {
 
 /// Whether all that follow are as far away or further than what was met.
 #[inline(always)]
-fn hidden(samples: &[Sample; 4], facet: &[f32; FACET]) -> bool {
-    let open = |lane: usize| samples.iter().any(|sample| sample.distance[lane] >= facet[15]);
+fn hidden(samples: &[Sample; 4], record: &[f32; SURFACE_LEN]) -> bool {
+    let open = |lane: usize| samples.iter().any(|sample| sample.distance[lane] >= record[15]);
     // Counted, as a sum of whole numbers is one of vectors.
     (0..LANES).map(|lane| u32::from(open(lane))).sum::<u32>() == 0
 }
 
 /// The ray along an axis. Nothing is quite parallel to anything.
 #[inline(always)]
-fn along(sample: &Sample, facet: &[f32; FACET], axis: usize, lane: usize) -> f32 {
-    let row = &facet[4 * axis..4 * axis + 3];
+fn along(sample: &Sample, record: &[f32; SURFACE_LEN], axis: usize, lane: usize) -> f32 {
+    let row = &record[4 * axis..4 * axis + 3];
     let l = row[0] * sample.x[lane] + row[1] * sample.y[lane] + row[2] * sample.z[lane];
     pick(l.abs() < 1e-12, 1e-12, l)
 }
 
 #[inline(always)]
-fn cuboid(sample: &mut Sample, facet: &[f32; FACET], base: f32) {
-    let (o, half) = ([facet[3], facet[7], facet[11]], [facet[12], facet[13], facet[14]]);
+fn cuboid(sample: &mut Sample, record: &[f32; SURFACE_LEN], base: f32) {
+    let (o, half) = ([record[3], record[7], record[11]], [record[12], record[13], record[14]]);
     // What has no height has one face.
     let flat = half[2] == 0.0;
     for lane in 0..LANES {
-        let l: [f32; 3] = std::array::from_fn(|axis| along(sample, facet, axis, lane));
+        let l: [f32; 3] = std::array::from_fn(|axis| along(sample, record, axis, lane));
         let inverse = l.map(|l| 1.0 / l);
         let middle: [f32; 3] = std::array::from_fn(|axis| -o[axis] * inverse[axis]);
         let reach: [f32; 3] = std::array::from_fn(|axis| half[axis] * inverse[axis].abs());
@@ -136,10 +136,10 @@ fn cuboid(sample: &mut Sample, facet: &[f32; FACET], base: f32) {
 }
 
 #[inline(always)]
-fn cylinder(sample: &mut Sample, facet: &[f32; FACET], base: f32) {
-    let (o, radius, half) = ([facet[3], facet[7], facet[11]], facet[12], facet[14]);
+fn cylinder(sample: &mut Sample, record: &[f32; SURFACE_LEN], base: f32) {
+    let (o, radius, half) = ([record[3], record[7], record[11]], record[12], record[14]);
     for lane in 0..LANES {
-        let l: [f32; 3] = std::array::from_fn(|axis| along(sample, facet, axis, lane));
+        let l: [f32; 3] = std::array::from_fn(|axis| along(sample, record, axis, lane));
         let a = l[0] * l[0] + l[1] * l[1];
         let b = o[0] * l[0] + o[1] * l[1];
         // Moment of the ray about the axis: no two large numbers are subtracted.
@@ -161,7 +161,7 @@ fn cylinder(sample: &mut Sample, facet: &[f32; FACET], base: f32) {
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let scene = scene(size);
+    let scene = surface_inputs(size);
     let [across, _] = scene.tiles;
     let params = Params { width: size.width, height: size.height, tiles: across as u32 };
     vec![Case {

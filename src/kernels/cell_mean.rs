@@ -1,9 +1,9 @@
 //! The mean of a plane over each cell's samples, each times its certainty: the confidence of a cell's flow from that of its
 //! pixels.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
-pub use super::trust::Params;
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
+pub use super::cell_confidence::Params;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel};
 

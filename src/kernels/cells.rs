@@ -2,12 +2,12 @@
 //!
 //! Neighbouring pixels' flows have their errors in common, over about a window's width: cells of that order hold all
 //! there is to know. A cell's place and rate are means over its samples, in the plane of the ideal pinhole at unit
-//! distance: of `m / m_z` for the midpoint bearing m, and of `(F − m F_z / m_z) / m_z` for the tangent flow F.
+//! distance: of `m / m_z` for the midpoint bearing m, and of `(F − m F_z / m_z) / m_z` for the spherical flow F.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
-use super::sighting::{Pinhole, rows};
-use super::tangent::motion_case;
+use super::bearings::{Pinhole, rows};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::spherical_flow::motion_case;
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -35,17 +35,24 @@ params! {
 
 kernel!(
     "cells" + ["sphere", "turn"],
-    reference(Params; flow, motion, certainty, trust) -> (cells),
+    reference(Params; flow, motion, certainty, confidence) -> (cells),
     cases: cases,
     tolerance: Tolerance {
         absolute: 1e-5,
         relative: 1e-5, of_largest: 0.0,
-        reason: "rates are tangent flows divided by the cosine from the axis, squared: at 75 degrees fifteen times the \
-                 roundings of the tangent flow",
+        reason: "rates are spherical flows divided by the cosine from the axis, squared: at 75 degrees fifteen times the \
+                 roundings of the spherical flow",
     },
 );
 
-fn reference(p: &Params, flow: &[f32], motion: &[f32], certainty: &[f32], trust: &[f32], cells: &mut [f32]) {
+fn reference(
+    p: &Params,
+    flow: &[f32],
+    motion: &[f32],
+    certainty: &[f32],
+    confidence: &[f32],
+    cells: &mut [f32],
+) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let (columns, _, out_stride) = dimensions(p.columns, p.rows);
     let motion = rows(motion);
@@ -59,7 +66,7 @@ fn reference(p: &Params, flow: &[f32], motion: &[f32], certainty: &[f32], trust:
                 for y in (row * cell..(row + 1) * cell).step_by(step).filter(|y| *y < height) {
                     for x in (column * cell..(column + 1) * cell).step_by(step).filter(|x| *x < width) {
                         let d = [flow[2 * y * stride + x], flow[(2 * y + 1) * stride + x]];
-                        let (seen, known) = pinhole.sighting(&motion, [x as f32, y as f32], d);
+                        let (seen, known) = pinhole.midpoint_flow(&motion, [x as f32, y as f32], d);
                         let (m, f) = (seen.midpoint, seen.flow);
                         // What lies beside or behind the camera has no place in the pinhole's plane.
                         if known && m[2] > 0.01 {
@@ -75,7 +82,7 @@ fn reference(p: &Params, flow: &[f32], motion: &[f32], certainty: &[f32], trust:
                 }
                 let known = sums[0] > 1e-3;
                 let share = 1.0 / sums[0].max(1e-6);
-                rows[column] = if known { trust[row * out_stride + column] } else { 0.0 };
+                rows[column] = if known { confidence[row * out_stride + column] } else { 0.0 };
                 for k in 1..5 {
                     rows[k * out_stride + column] = if known { sums[k] * share } else { 0.0 };
                 }

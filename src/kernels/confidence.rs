@@ -7,8 +7,8 @@
 //! what rounding to whole gray levels leaves. The confidence is `0.25 / (0.25 + σ)`, times the share of the window that
 //! both frames show: 1 where the flow is certain, ½ at a quarter of a pixel, 0 where there is nothing to go by.
 
-use super::cases::{Fill, cases as each_fill};
 use super::solve::{average, equations};
+use super::test_inputs::{Fill, cases as each_fill};
 pub use super::solve::Params;
 use super::tables;
 use crate::frame::Size;
@@ -19,7 +19,7 @@ const HALF: f32 = 0.25;
 const SMALLEST: f32 = 1e-6;
 
 kernel!(
-    "confidence" + ["image", "window", "average", "trust"],
+    "confidence" + ["image", "window", "average", "confidence"],
     reference(Params; columns, window) -> (confidence),
     cases: cases,
     tolerance: Tolerance {
@@ -34,7 +34,7 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]
     let width = p.width as usize;
     average(p, columns, window, confidence, 1, #[inline(always)] |_, averages, row| {
         for x in 0..width {
-            row[x] = trusted(averages.map(|average| average[x]));
+            row[x] = confidence_of(averages.map(|average| average[x]));
         }
     });
 }
@@ -42,7 +42,7 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]
 /// The confidence of what has this evidence: the mean of AᵀA (xx, xy, yy), the mean square of what the flow leaves of Δb,
 /// and the share that both frames show.
 #[inline(always)]
-pub(super) fn trusted([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5]) -> f32 {
+pub(super) fn confidence_of([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5]) -> f32 {
     let half_difference = 0.5 * (g_xx - g_yy);
     let root = (half_difference * half_difference + g_xy * g_xy).sqrt();
     let weakest = 0.5 * (g_xx + g_yy) - root;

@@ -4,10 +4,10 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
 //! Gaussian applicability of his thesis (2002).
 
-use super::cases::{Fill, cases as each_fill, planes};
 use super::expansion_y::power;
-use super::rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
+use super::parallel_rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
 use super::tables;
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

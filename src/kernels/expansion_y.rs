@@ -3,9 +3,9 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
 //! Gaussian applicability of his thesis (2002).
 
-use super::cases::{Fill, gray_cases};
-use super::rows::{Split, bands, clamp_index, dimensions, weighted_sum};
+use super::parallel_rows::{Split, bands, clamp_index, dimensions, weighted_sum};
 use super::tables;
+use super::test_inputs::{Fill, gray_cases};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

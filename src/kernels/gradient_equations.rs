@@ -5,8 +5,8 @@
 //! derivatives, in gray levels per pixel and per frame. A pixel counts by the least share of its neighbourhood that both
 //! pictures show.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

@@ -12,13 +12,13 @@ pub(super) fn distort([x, y]: [f32; 2], a: [f32; 4], b: [f32; 4]) -> [f32; 2] {
     [x * q + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x), y * q + p1 * (s + 2.0 * y * y) + 2.0 * p2 * x * y]
 }
 
-/// A coordinate held within 0 to `last`. What is not a number is held at 0.
+/// A coordinate clamped to the range 0 to `last`. NaN becomes 0.
 #[inline(always)]
-pub(super) fn hold(place: f32, last: f32) -> f32 {
+pub(super) fn clamp_to_frame(place: f32, last: f32) -> f32 {
     if place > 0.0 { place.min(last) } else { 0.0 }
 }
 
-/// A plane read between pixels, at a place that is held within it. `value` is applied to each pixel first.
+/// A plane read between pixels, at a place that is clamped to it. `value` is applied to each pixel first.
 #[inline(always)]
 pub(super) fn bilinear(
     plane: &[f32],
@@ -26,7 +26,7 @@ pub(super) fn bilinear(
     [x, y]: [f32; 2],
     value: impl Fn(f32) -> f32,
 ) -> f32 {
-    let (x, y) = (hold(x, (width - 1) as f32), hold(y, (height - 1) as f32));
+    let (x, y) = (clamp_to_frame(x, (width - 1) as f32), clamp_to_frame(y, (height - 1) as f32));
     let (left, above) = (x as usize, y as usize);
     let (right, below) = ((left + 1).min(width - 1), (above + 1).min(height - 1));
     let (along, down) = (x - left as f32, y - above as f32);

@@ -1,7 +1,7 @@
 //! How fast each cell's surroundings come nearer: the nearness rate and the divergence of the flow on the view sphere.
 //!
-//! **Divergence**: the rates of a window of cells are fitted affinely by least squares, each cell weighted by its trust.
-//! With its slopes, and the rate (ẋ, ẏ) it has at the cell, the divergence of the tangent flow on the unit sphere is
+//! **Divergence**: the rates of a window of cells are fitted affinely by least squares, each cell weighted by its confidence.
+//! With its slopes, and the rate (ẋ, ẏ) it has at the cell, the divergence of the spherical flow on the unit sphere is
 //! `∂ẋ/∂x + ∂ẏ/∂y − 3 (x ẋ + y ẏ) / (1 + x² + y²)` in coordinates of the pinhole's plane. Its error is of second order
 //! in the window's width. It is not there where half of the window's cells are missing.
 //!
@@ -10,10 +10,10 @@
 //! inverse variances: the flow's length against g, which is good far from v̂; and the growth of the flow across the
 //! window against that of g, which is good near v̂, where neither v̂'s error nor the surface's slant matters to it.
 
-use super::cases::{Fill, Random, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
-use super::sighting::rows;
-use super::tangent::motion_case;
+use super::bearings::rows;
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::spherical_flow::motion_case;
+use super::test_inputs::{Fill, Random, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -34,8 +34,8 @@ params! {
         origin: [f32; 2],
         /// Standard error of the rate of a fully trusted cell, a frame, in the pinhole's plane.
         noise: f32,
-        /// Cells of less trust are left out.
-        least_trust: f32,
+        /// Cells of less confidence are left out.
+        least_confidence: f32,
     }
 }
 
@@ -113,17 +113,17 @@ fn reference(p: &Params, cells: &[f32], motion: &[f32], looming: &mut [f32]) {
                 for y in (row - radius).max(0)..(row + radius + 1).min(height as isize) {
                     for x in (column - radius).max(0)..(column + radius + 1).min(columns as isize) {
                         let at = 5 * y as usize * stride + x as usize;
-                        let trust = cells[at];
-                        if !(trust >= p.least_trust) {
+                        let confidence = cells[at];
+                        if !(confidence >= p.least_confidence) {
                             continue;
                         }
                         let [px, py, rx, ry] = [1, 2, 3, 4].map(|k| cells[at + k * stride]);
                         let n = (1.0 + px * px + py * py).sqrt();
                         let g = [n * (v_z * px - v_x), n * (v_z * py - v_y)];
                         let place = [px - origin[0], py - origin[1]];
-                        all.add(trust, place, [rx, ry], g);
+                        all.add(confidence, place, [rx, ry], g);
                         if (x - column).abs() <= inner && (y - row).abs() <= inner {
-                            near.add(trust, place, [rx, ry], g);
+                            near.add(confidence, place, [rx, ry], g);
                         }
                     }
                 }
@@ -137,7 +137,7 @@ fn reference(p: &Params, cells: &[f32], motion: &[f32], looming: &mut [f32]) {
     });
 }
 
-/// Nearness rate, divergence, the former's standard error, and trust.
+/// Nearness rate, divergence, the former's standard error, and confidence.
 #[inline(always)]
 fn fit(p: &Params, all: &Sums, near: &Sums, origin: Pair, v_error: f32, cells: f32) -> [f32; 4] {
     let share = 1.0 / all.weight.max(1e-20);
@@ -192,7 +192,7 @@ pub(super) fn cells_case(size: Size, fill: Fill, seed: u32) -> Vec<f32> {
         for x in 0..stride {
             let place = [x, y].map(|i| 0.02 * (i as f32 - 12.0) + 0.004 * random.next());
             let depth = 0.05 * if fill == Fill::Flat { 1.0 } else { 0.5 + random.next() };
-            let trust = match fill {
+            let confidence = match fill {
                 Fill::Flat => 1.0,
                 // Some below what counts, but none near the limit: a rounding must not decide.
                 _ if random.next() < 0.3 => 0.01,
@@ -201,7 +201,7 @@ pub(super) fn cells_case(size: Size, fill: Fill, seed: u32) -> Vec<f32> {
             let of_x = x.min(size.width as usize - 1);
             let from = if of_x == x { None } else { Some(of_x) };
             for (channel, value) in
-                [trust, place[0], place[1], depth * place[0], depth * place[1]].into_iter().enumerate()
+                [confidence, place[0], place[1], depth * place[0], depth * place[1]].into_iter().enumerate()
             {
                 rows[channel * stride + x] = match from {
                     None => value,
@@ -223,7 +223,7 @@ fn cases(size: Size) -> Vec<Case> {
         pitch: [0.02, 0.02],
         origin: [-0.24, -0.24],
         noise: 1e-4,
-        least_trust: 0.1,
+        least_confidence: 0.1,
     };
     each_fill(
         &[Fill::Flat, Fill::Textured],

@@ -3,7 +3,7 @@
 //! White is 255 in every format, and 16-bit samples keep their fractions: the constants of the equations (10⁻³ beside the
 //! determinant, the noise of the confidence) are in those gray levels.
 
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use crate::frame::{PixelFormat, Size};
 use crate::kernel::{Case, Tolerance, kernel, params};
 

@@ -4,17 +4,17 @@
 //! its pipeline and a named test of GPU against CPU follow from the list; `viewsphere bench` and `crosscheck` show what a
 //! plan uses.
 
-pub mod cases;
+mod bearings;
 pub mod compare;
-mod facet_cases;
-pub mod facets;
+mod expansion_pair;
 pub(crate) mod hash;
 mod lens;
 mod octaves;
-mod pair;
-pub(crate) mod rows;
-mod sighting;
+pub(crate) mod parallel_rows;
+mod surface_inputs;
+pub mod surface_layout;
 pub mod tables;
+pub mod test_inputs;
 
 macro_rules! registry {
     (($d:tt) $($kernel:ident),* $(,)?) => {
@@ -34,31 +34,31 @@ macro_rules! registry {
 registry!(
     ($)
     luma,
-    weigh,
+    premultiply,
     binomial,
     resample_y,
     resample_x,
     expansion_y,
     expansion_x,
-    certain_expansion_y,
-    certain_expansion_x,
+    normalized_expansion_y,
+    normalized_expansion_x,
     upsample,
-    area,
-    matrices,
-    certain_matrices,
+    downsample_flow,
+    normal_equations,
+    weighted_normal_equations,
     window_y,
     solve,
-    advance,
+    solve_increment,
     residual,
     confidence,
     warp,
     gradient_equations,
     unweight,
-    lens_map,
+    undistort_map,
     remap,
-    prime,
-    tangent,
-    trust,
+    rotational_flow,
+    spherical_flow,
+    cell_confidence,
     cell_mean,
     cells,
     looming,

@@ -1,7 +1,7 @@
 //! The endless texture of the simulator for neighbouring pixels at once: see [`crate::sim`].
 
-use super::facets::{LANES, Lanes, pick};
 use super::hash::scrambled;
+use super::surface_layout::{LANES, Lanes, pick};
 
 const OCTAVES: u32 = 11;
 const AMPLITUDE: f32 = 50.0;

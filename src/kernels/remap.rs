@@ -1,8 +1,8 @@
 //! A picture read bilinearly at the places that a map says, its border replicated.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::lens::hold;
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::lens::clamp_to_frame;
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -69,8 +69,8 @@ fn read(
     let last = [width as u32 - 1, height as u32 - 1];
     let (mut first, mut right, mut below) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
     for i in 0..BLOCK {
-        (x[i], y[i]) = (hold(x[i], last[0] as f32), hold(y[i], last[1] as f32));
-        // Held within the picture, so that nothing is lost.
+        (x[i], y[i]) = (clamp_to_frame(x[i], last[0] as f32), clamp_to_frame(y[i], last[1] as f32));
+        // Clamped to the picture, so that nothing is lost.
         let (left, above) = (x[i] as i32 as u32, y[i] as i32 as u32);
         (x[i], y[i]) = (x[i] - left as f32, y[i] - above as f32);
         first[i] = above * stride as u32 + left;

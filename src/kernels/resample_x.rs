@@ -1,11 +1,11 @@
 //! Rows of a picture smoothed by a Gaussian and read at fractional columns: the horizontal half of one pyramid step.
 
-use super::cases::{Fill, gray_cases};
+use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
 use super::resample_y::mix_weights;
-use super::rows::{Split, bands, dimensions, reflect_101, repeat_last};
+use super::tables;
+use super::test_inputs::{Fill, gray_cases};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
-use super::tables;
 
 params! {
     /// Shape of the pictures and of the Gaussian.

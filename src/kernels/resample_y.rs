@@ -1,10 +1,10 @@
 //! Columns of a picture smoothed by a Gaussian and read at fractional rows: the vertical half of one pyramid step.
 
-use super::cases::{Fill, gray_cases};
-use super::rows::{Split, bands, dimensions, reflect_101, weighted_sum};
+use super::parallel_rows::{Split, bands, dimensions, reflect_101, weighted_sum};
+use super::tables;
+use super::test_inputs::{Fill, gray_cases};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
-use super::tables;
 
 params! {
     /// Shape of the pictures and of the Gaussian.

@@ -3,9 +3,9 @@
 //! Channels of the result: AᵀA (xx, xy, yy), the square of what the flow leaves of Δb = −½ (b2 − b1), and 1 where both
 //! frames show the place, times the first frame's certainty, which all of them are weighted with.
 
-use super::cases::{Fill, cases as each_fill, planes, quads};
-use super::pair::{BLOCK, Pair, fours, squared};
-use super::rows::dimensions;
+use super::expansion_pair::{BLOCK, ExpansionPair, fours, squared};
+use super::parallel_rows::dimensions;
+use super::test_inputs::{Fill, cases as each_fill, planes, quads};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -45,7 +45,8 @@ fn reference(
 ) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
-    let pair = Pair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
+    let pair =
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride };
     pair.each_block(evidence, flow, #[inline(always)] |model, stretch| {
         let mut channels = [[0.0; BLOCK]; 5];
         let certainties = &certainty[stretch.at..][..stretch.count];

@@ -3,17 +3,17 @@
 //! Channels of the result: 0 the share of the sector's cells that are trusted enough; 1 to 3 their nearness rate's lower
 //! quantile, median and upper quantile; 4 the upper quantile of the divergence where that is positive, and else 0: a
 //! signed sum would be the net flux through the sector's border, where an obstacle within cancels itself; 5 their mean
-//! trust; 6 to 8 their mean tangent flow F, weighted by trust; 9 to 14 the moment `Σ w n nᵀ` of the normals `n = p × F`
-//! (xx, xy, xz, yy, yz, zz), whose weakest direction is that of motion; 15 the mean standard error of the nearness rate.
-//! Rates are a frame.
+//! confidence; 6 to 8 their mean spherical flow F, weighted by confidence; 9 to 14 the moment `Σ w n nᵀ` of the normals
+//! `n = p × F` (xx, xy, xz, yy, yz, zz), whose weakest direction is that of motion; 15 the mean standard error of the
+//! nearness rate. Rates are a frame.
 //!
 //! Quantiles are values of single cells, by nearest rank, and found from the highest bit to the lowest by counting: the
 //! same bits whatever the order of the cells.
 
-use super::cases::{Fill, cases as each_fill, planes};
+use super::bearings::dot;
 use super::looming::cells_case;
-use super::rows::{Split, bands, dimensions, repeat_last};
-use super::sighting::dot;
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -26,8 +26,8 @@ params! {
         rows: u32,
         /// Cells in a row.
         cell_columns: u32,
-        /// Cells of less trust are left out.
-        least_trust: f32,
+        /// Cells of less confidence are left out.
+        least_confidence: f32,
         /// The upper quantile's rank, above 0.5 and below 1; the lower one's is 1 less it.
         quantile: f32,
     }
@@ -74,7 +74,7 @@ fn reference(
                     let of_cells = |channel: usize| cells[(5 * y + channel) * cell_stride + x];
                     let of_looming = |channel: usize| looming[(4 * y + channel) * cell_stride + x];
                     let w = of_looming(3);
-                    if !(w >= p.least_trust) {
+                    if !(w >= p.least_confidence) {
                         continue;
                     }
                     (rates[valid], divergences[valid]) = (of_looming(0), of_looming(1).max(0.0));
@@ -143,16 +143,16 @@ fn cases(size: Size) -> Vec<Case> {
         columns: extent.width,
         rows: extent.height,
         cell_columns: cells.width,
-        least_trust: 0.1,
+        least_confidence: 0.1,
         quantile: 0.8,
     };
     let fills = [Fill::Flat, Fill::Textured];
     each_fill(&fills, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
         let mut looming = planes(cells, 4, fill, [-1.0, 1.0], 5);
-        // Trust is not negative; some cells are below what counts, none is near the limit.
+        // Confidence is not negative; some cells are below what counts, none is near the limit.
         for rows in looming.chunks_exact_mut(4 * cells.stride()) {
-            for trust in &mut rows[3 * cells.stride()..] {
-                *trust = if *trust < -0.2 { 0.0 } else { 0.3 + 0.5 * trust.abs() };
+            for confidence in &mut rows[3 * cells.stride()..] {
+                *confidence = if *confidence < -0.2 { 0.0 } else { 0.3 + 0.5 * confidence.abs() };
             }
         }
         vec![cells_case(cells, fill, 9), looming, ranges.clone(), members.clone()]

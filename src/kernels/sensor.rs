@@ -3,9 +3,9 @@
 //! The noise is the sum of four uniform numbers (Irwin and Hall), within 3.5 standard deviations, from a hash of the pixel
 //! and the frame's seed: the same whoever computes it, in whatever order.
 
-use super::cases::{Fill, cases as each_fill, planes};
 use super::hash::scrambled;
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

@@ -3,11 +3,11 @@
 //! Each thing that a pixel sees is shown once, by its texture in the middle of the samples that see it, and weighted with
 //! their number. The texture is made for the size of a pixel, so that this is its mean over them.
 
-use super::cases::{Fill, planes};
-use super::facet_cases::scene;
-use super::facets::{FACET, LANES, Lanes, OFFSETS, RAY, most, pick};
 use super::octaves::{Places, log2_of, textured, turns, whole};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::surface_inputs::surface_inputs;
+use super::surface_layout::{LANES, Lanes, OFFSETS, RAY, SURFACE_LEN, most, pick};
+use super::test_inputs::{Fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
@@ -50,7 +50,7 @@ fn reference(
 ) {
     let (width, _, stride) = dimensions(p.width, p.height);
     let up = [surfaces[0], surfaces[1], surfaces[2]];
-    let facets = surfaces[4..].as_chunks::<FACET>().0;
+    let records = surfaces[4..].as_chunks::<SURFACE_LEN>().0;
     let split = Split { second_row: stride, dearer: 64, ..Split::rows_of(stride) };
     bands(gray, nearness, split, #[inline(always)] |band| {
         let rows = band.out.chunks_exact_mut(stride).zip(band.second.chunks_exact_mut(stride));
@@ -60,7 +60,7 @@ fn reference(
             let ids = ids[4 * at..][..4 * width].as_chunks::<4>().0;
             for first in (0..width).step_by(LANES) {
                 let lanes = first..width.min(first + LANES);
-                let (level, near) = pixels(&rays[lanes.clone()], &ids[lanes.clone()], facets, up);
+                let (level, near) = pixels(&rays[lanes.clone()], &ids[lanes.clone()], records, up);
                 for (lane, x) in lanes.enumerate() {
                     let shown = rays[x][2] > 0.0;
                     gray[x] = before[at + x] + p.share * pick(shown, level[lane], 0.0);
@@ -94,7 +94,12 @@ struct Faces {
 
 /// Gray levels and nearness of up to [`LANES`] pixels.
 #[inline(always)]
-fn pixels(rays: &[[f32; RAY]], ids: &[[f32; 4]], facets: &[[f32; FACET]], up: [f32; 3]) -> (Lanes, Lanes) {
+fn pixels(
+    rays: &[[f32; RAY]],
+    ids: &[[f32; 4]],
+    records: &[[f32; SURFACE_LEN]],
+    up: [f32; 3],
+) -> (Lanes, Lanes) {
     let mut ray = [[0.0; LANES]; RAY];
     let mut seen = [[0.0; LANES]; 4];
     for (lane, (values, ids)) in rays.iter().zip(ids).enumerate() {
@@ -135,7 +140,7 @@ fn pixels(rays: &[[f32; RAY]], ids: &[[f32; 4]], facets: &[[f32; FACET]], up: [f
             SKY[0] + SKY[1] * (d[0][lane] * up[0] + d[1][lane] * up[1] + d[2][lane] * up[2])
         });
         if one.iter().any(|one| *one > 0.0) {
-            let faces = faces(&one, facets);
+            let faces = faces(&one, records);
             let of_surface = lit(&faces, &d, up, &width);
             let (distance, within) = centre_met(&faces, &centre);
             for lane in 0..LANES {
@@ -162,7 +167,7 @@ fn unit(x: &Lanes, y: &Lanes) -> [Lanes; 3] {
 }
 
 #[inline(always)]
-fn faces(ids: &Lanes, facets: &[[f32; FACET]]) -> Faces {
+fn faces(ids: &Lanes, records: &[[f32; SURFACE_LEN]]) -> Faces {
     let mut faces = Faces {
         axes: [[[0.0; LANES]; 3]; 3],
         place: [[0.0; LANES]; 3],
@@ -177,20 +182,20 @@ fn faces(ids: &Lanes, facets: &[[f32; FACET]]) -> Faces {
     let alike = ids.iter().all(|id| *id == ids[0]);
     for lane in 0..if alike { 1 } else { LANES } {
         let code = most(ids[lane] - 1.0, 0.0) as u32;
-        let (facet, face) = (&facets[(code / 8) as usize], code % 8);
-        let (flat, round) = (facet[23] == 1.0, facet[23] == 2.0);
+        let (record, face) = (&records[(code / 8) as usize], code % 8);
+        let (flat, round) = (record[23] == 1.0, record[23] == 2.0);
         let across = if flat || round { 2 } else { face as usize / 2 };
         for (k, axis) in [(across + 1) % 3, (across + 2) % 3, across].into_iter().enumerate() {
-            faces.axes[k].iter_mut().zip(&facet[4 * axis..]).for_each(|(lanes, value)| lanes[lane] = *value);
-            faces.place[k][lane] = facet[4 * axis + 3];
-            faces.half[k][lane] = facet[12 + axis];
-            faces.rest[k][lane] = facet[16 + axis];
-            faces.cells[k][lane] = facet[20 + axis];
+            faces.axes[k].iter_mut().zip(&record[4 * axis..]).for_each(|(lanes, value)| lanes[lane] = *value);
+            faces.place[k][lane] = record[4 * axis + 3];
+            faces.half[k][lane] = record[12 + axis];
+            faces.rest[k][lane] = record[16 + axis];
+            faces.cells[k][lane] = record[20 + axis];
         }
         let upper = if round { face == 2 } else { face % 2 == 1 };
         faces.side[lane] = pick(upper, 1.0, -1.0);
         faces.round[lane] = pick(round, pick(face == 0, 1.0, 2.0), 0.0);
-        faces.seed[lane] = (8 * facet[19] as u32).wrapping_add(face);
+        faces.seed[lane] = (8 * record[19] as u32).wrapping_add(face);
     }
     if alike {
         let spread = |lanes: &mut Lanes| *lanes = [lanes[0]; LANES];
@@ -299,7 +304,7 @@ fn lit(faces: &Faces, d: &[Lanes; 3], up: [f32; 3], width: &Lanes) -> Lanes {
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let scene = scene(size);
+    let scene = surface_inputs(size);
     let ids = scene.ids(size, &scene.rays);
     let params = Params { width: size.width, height: size.height, share: 0.5 };
     let before = planes(size, 1, Fill::Textured, [100.0, 228.0], 3);

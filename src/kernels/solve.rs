@@ -3,9 +3,9 @@
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3. The determinant is kept
 //! off zero by 10⁻³, as OpenCV does. What overflow leaves without a value counts as no motion, so that it cannot spread.
 
-use super::cases::{Fill, Random, cases as each_fill};
-use super::rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
+use super::parallel_rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
 use super::tables;
+use super::test_inputs::{Fill, Random, cases as each_fill};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

@@ -13,7 +13,7 @@ pub fn gauss(sigma: f64, taps: u32) -> Vec<f32> {
     (0..taps).map(|i| (weight(i) / sum) as f32).collect()
 }
 
-/// Where a row of `out` samples reads a row of `inner` samples: pairs of a whole index and a fraction, held within it.
+/// Where a row of `out` samples reads a row of `inner` samples: pairs of a whole index and a fraction, clamped to it.
 ///
 /// The sample centres are aligned: `x_in = (x_out + ½) · in/out − ½`, in the precision of OpenCV's `resize`.
 pub fn place(inner: u32, out: u32) -> Vec<f32> {

@@ -1,8 +1,8 @@
 //! A picture that was smoothed together with its certainty, divided by it: the smoothed picture of what is known, and 0
 //! where next to nothing is (Knutsson and Westin, Normalized and differential convolution, CVPR 1993).
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

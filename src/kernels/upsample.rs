@@ -1,8 +1,8 @@
 //! A coarser level's flow read bilinearly at this level's pixels and scaled to its pixel size.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::tables;
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

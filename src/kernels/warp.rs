@@ -1,8 +1,8 @@
 //! The second picture read where the flow so far points, and how far each place is shown: by the second picture's certainty,
 //! and not at all outside it.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands, dimensions, repeat_last};
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

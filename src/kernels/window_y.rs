@@ -1,10 +1,10 @@
 //! Columns of five channels averaged by a symmetric window: the vertical half of the neighbourhood's sum.
 //!
-//! The equations are numbers: [`matrices`](super::matrices) sees to it.
+//! The equations are numbers: [`normal_equations`](super::normal_equations) sees to it.
 
-use super::cases::{Fill, cases as each_fill, planes};
-use super::rows::{Split, bands, clamp_index, dimensions, weighted_sum};
+use super::parallel_rows::{Split, bands, clamp_index, dimensions, weighted_sum};
 use super::tables;
+use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 

@@ -1,11 +1,11 @@
 //! The configuration of a pipeline.
 
-use crate::camera::{Camera, Lens, View};
+use crate::camera::{Camera, Framing, Lens};
 use crate::error::{Error, Result};
 use crate::flow::Algorithm;
 use crate::frame::{PixelFormat, Plane};
 use crate::imu::GyroConfig;
-use crate::sphere::{Alarm, Fields, Sphere};
+use crate::sphere::{Alarm, ExtraOutputs, Sphere};
 use crate::stream::StreamConfig;
 
 /// How a [`Pipeline`](super::Pipeline) works.
@@ -32,7 +32,7 @@ pub struct PipelineConfig {
     /// The gyro. None if there is none: then the camera's turn stays in the flow.
     pub gyro: Option<GyroConfig>,
     /// What is read beside the sectors.
-    pub fields: Fields,
+    pub fields: ExtraOutputs,
     /// What is a threat.
     pub alarm: Alarm,
     /// Frames further apart make no pair, in seconds, above 0.
@@ -56,7 +56,7 @@ impl Default for PipelineConfig {
             ideal: None,
             mask: None,
             gyro: None,
-            fields: Fields::default(),
+            fields: ExtraOutputs::default(),
             alarm: Alarm::default(),
             max_interval_s: 0.25,
             max_remaining_rad_s: f64::INFINITY,
@@ -99,7 +99,7 @@ impl PipelineConfig {
     pub(crate) fn ideal(&self, camera: &Camera) -> Result<Camera> {
         match &self.ideal {
             None if camera.lens == Lens::NONE => Ok(*camera),
-            None => camera.ideal(camera.size, View::CropToValid),
+            None => camera.ideal(camera.size, Framing::CropToValid),
             Some(ideal) if ideal.lens == Lens::NONE => Ok(*ideal),
             Some(_) => Err(Error::parameter("ideal", "a camera with a lens", "one without")),
         }

@@ -23,7 +23,7 @@ pub struct Cue<'a> {
     pub prev_from_cur: Option<DMat3>,
     /// The camera's angular rate that its flow shows beside what the gyro told, rad/s in the camera's frame: a bias. None
     /// without a gyro, and where too little is seen to tell.
-    pub remaining_turn_rad_s: Option<DVec3>,
+    pub residual_rotation_rad_s: Option<DVec3>,
     /// Which way the camera moves.
     pub heading: Heading,
     /// What each sector of the view says.
@@ -33,17 +33,19 @@ pub struct Cue<'a> {
     /// The flow from this frame back to the one before in pixels of the ideal picture, if it is read. With
     /// [`Derotation::Before`](crate::sphere::Derotation::Before) the camera's turn is not in it.
     pub flow: Option<&'a FlowField>,
-    /// Nearness rate, divergence, error and trust of each cell, if [`Fields::looming`] asks for them: rows of cells, in
-    /// each row the four channels one after the other, each padded to a multiple of four values. Rates are per frame.
+    /// Nearness rate, divergence, error and confidence of each cell, if [`ExtraOutputs::looming`] asks for them: rows
+    /// of cells, in each row the four channels one after the other, each padded to a multiple of four values. Rates are
+    /// per frame.
     ///
-    /// [`Fields::looming`]: crate::sphere::Fields::looming
+    /// [`ExtraOutputs::looming`]: crate::sphere::ExtraOutputs::looming
     pub looming: Option<&'a [f32]>,
-    /// Trust, place (2) and rate (2) of each cell, if [`Fields::cells`](crate::sphere::Fields::cells) asks for them: five
-    /// channels, laid out as [`Cue::looming`].
+    /// Confidence, place (2) and rate (2) of each cell, if [`ExtraOutputs::cells`](crate::sphere::ExtraOutputs::cells)
+    /// asks for them: five channels, laid out as [`Cue::looming`].
     pub cells: Option<&'a [f32]>,
-    /// The flow on the view sphere of each pixel, if [`Fields::tangent`](crate::sphere::Fields::tangent) asks for it: three
-    /// channels in radians, laid out as [`Cue::looming`] with pixels for cells.
-    pub tangent: Option<&'a [f32]>,
+    /// The flow on the view sphere of each pixel, if
+    /// [`ExtraOutputs::spherical_flow`](crate::sphere::ExtraOutputs::spherical_flow) asks for it: three channels in
+    /// radians, laid out as [`Cue::looming`] with pixels for cells.
+    pub spherical_flow: Option<&'a [f32]>,
     /// Time from submit until now.
     pub latency: Duration,
 }
@@ -58,14 +60,14 @@ impl Cue<'_> {
             interval_s: self.interval_s,
             invalid: self.invalid,
             prev_from_cur: self.prev_from_cur,
-            remaining_turn_rad_s: self.remaining_turn_rad_s,
+            residual_rotation_rad_s: self.residual_rotation_rad_s,
             heading: self.heading,
             sectors: self.sectors.clone(),
             threat: self.threat,
             flow: self.flow.cloned(),
             looming: self.looming.map(<[f32]>::to_vec),
             cells: self.cells.map(<[f32]>::to_vec),
-            tangent: self.tangent.map(<[f32]>::to_vec),
+            spherical_flow: self.spherical_flow.map(<[f32]>::to_vec),
             latency: self.latency,
         }
     }
@@ -84,8 +86,8 @@ pub struct OwnedCue {
     pub invalid: Option<Invalid>,
     /// The camera's rotation since the previous frame: [`Cue::prev_from_cur`].
     pub prev_from_cur: Option<DMat3>,
-    /// The rotation rate that the gyro does not explain, rad/s: [`Cue::remaining_turn_rad_s`].
-    pub remaining_turn_rad_s: Option<DVec3>,
+    /// The rotation rate that the gyro does not explain, rad/s: [`Cue::residual_rotation_rad_s`].
+    pub residual_rotation_rad_s: Option<DVec3>,
     /// The direction of motion: [`Cue::heading`].
     pub heading: Heading,
     /// The sectors of the view: [`Cue::sectors`].
@@ -98,8 +100,8 @@ pub struct OwnedCue {
     pub looming: Option<Vec<f32>>,
     /// The flow of each cell: [`Cue::cells`].
     pub cells: Option<Vec<f32>>,
-    /// The flow on the view sphere: [`Cue::tangent`].
-    pub tangent: Option<Vec<f32>>,
+    /// The flow on the view sphere: [`Cue::spherical_flow`].
+    pub spherical_flow: Option<Vec<f32>>,
     /// Time from submit until the cue was there: [`Cue::latency`].
     pub latency: Duration,
 }
@@ -113,14 +115,14 @@ impl OwnedCue {
             interval_s: self.interval_s,
             invalid: self.invalid,
             prev_from_cur: self.prev_from_cur,
-            remaining_turn_rad_s: self.remaining_turn_rad_s,
+            residual_rotation_rad_s: self.residual_rotation_rad_s,
             heading: self.heading,
             sectors: &self.sectors,
             threat: self.threat,
             flow: self.flow.as_ref(),
             looming: self.looming.as_deref(),
             cells: self.cells.as_deref(),
-            tangent: self.tangent.as_deref(),
+            spherical_flow: self.spherical_flow.as_deref(),
             latency: self.latency,
         }
     }
@@ -245,7 +247,7 @@ mod tests {
             interval_s: Some(0.03),
             invalid: Some(Invalid::Coverage { found: 0.1, least: 0.2 }),
             prev_from_cur: Some(DMat3::from_rotation_y(0.1)),
-            remaining_turn_rad_s: Some(DVec3::X),
+            residual_rotation_rad_s: Some(DVec3::X),
             heading: Heading { direction: DVec3::Z, error_rad: 0.01 },
             sectors: &Sectors::unknown(grid),
             threat: Some(Threat {
@@ -258,7 +260,7 @@ mod tests {
             flow: Some(&flow),
             looming: Some(&[1.0, 2.0]),
             cells: None,
-            tangent: None,
+            spherical_flow: None,
             latency: Duration::from_millis(4),
         };
         let text = format!("{cue:?}");

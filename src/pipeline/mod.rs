@@ -15,7 +15,7 @@ use crate::frame::Frame;
 use crate::gpu::Gpu;
 use crate::imu::{Gyro, GyroSample};
 use crate::plan::{Plan, Value};
-use crate::sphere::{self, AlarmFilter, Cells, Eye, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
+use crate::sphere::{self, AlarmFilter, Cameras, Cells, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
 use crate::stream::{Latency, Stats, Stream, Ticket};
 
 /// Frames of a camera go in, each with its time, and the gyro's samples; a [`Cue`] a frame comes out.
@@ -74,9 +74,10 @@ impl Pipeline {
         camera.validate()?;
         let ideal = config.ideal(camera)?;
         ideal.validate()?;
-        let eye = Eye { raw: camera, ideal: &ideal, mask: config.mask.as_ref(), gyro: config.gyro.is_some() };
+        let cameras =
+            Cameras { raw: camera, ideal: &ideal, mask: config.mask.as_ref(), gyro: config.gyro.is_some() };
         let PipelineConfig { algorithm, certainty, format, fields, .. } = config;
-        let (mut plan, cells, grid) = plan(algorithm, *certainty, &config.sphere, eye, *format, *fields)?;
+        let (mut plan, cells, grid) = plan(algorithm, *certainty, &config.sphere, cameras, *format, *fields)?;
         plan.outputs.retain(|port| config.read_flow || port.name != "flow");
         Ok(Self {
             stream: Stream::new(&backend, plan, &config.stream)?,
@@ -158,7 +159,7 @@ impl Pipeline {
         let lost = done.previous != frame.before.map(|before| before.frame);
         let mut invalid = frame.fault.or(lost.then_some(Invalid::Lost));
         let (mut outputs, mut threat) = (None, None);
-        let mut remaining_turn_rad_s = None;
+        let mut residual_rotation_rad_s = None;
         let pair = done.outputs.and_then(|found| Some((found, found.raw("sectors")?, interval_s?)));
         match pair {
             Some((found, summed, interval_s)) if !lost => {
@@ -169,8 +170,8 @@ impl Pipeline {
                 invalid = invalid
                     .or((!(coverage >= least)).then_some(Invalid::Coverage { found: coverage, least }));
                 if invalid.is_none() && config.watches_turn() {
-                    remaining_turn_rad_s = sphere::remaining_turn_rad_s(sectors);
-                    let found_rad_s = remaining_turn_rad_s.map_or(0.0, DVec3::length);
+                    residual_rotation_rad_s = sphere::residual_rotation_rad_s(sectors);
+                    let found_rad_s = residual_rotation_rad_s.map_or(0.0, DVec3::length);
                     let most_rad_s = config.max_remaining_rad_s;
                     invalid =
                         (!(found_rad_s <= most_rad_s)).then_some(Invalid::Turn { found_rad_s, most_rad_s });
@@ -192,14 +193,14 @@ impl Pipeline {
             interval_s,
             invalid,
             prev_from_cur: frame.turn,
-            remaining_turn_rad_s,
+            residual_rotation_rad_s,
             heading: *heading,
             sectors,
             threat,
             flow: outputs.and_then(|outputs| outputs.flow("flow")),
             looming: outputs.and_then(|outputs| outputs.raw("looming")),
             cells: outputs.and_then(|outputs| outputs.raw("cells")),
-            tangent: outputs.and_then(|outputs| outputs.raw("tangent")),
+            spherical_flow: outputs.and_then(|outputs| outputs.raw("tangent")),
             latency: done.latency,
         })
     }

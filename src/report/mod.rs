@@ -20,7 +20,7 @@ mod html;
 mod overlay;
 #[cfg(feature = "sim")]
 mod plot;
-mod straight;
+mod rectified;
 
 pub use arrows::arrows;
 pub use campaign::{CampaignRow, campaign_page};

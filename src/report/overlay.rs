@@ -6,7 +6,7 @@ use super::colour_wheel::colour_wheel;
 use super::colours::TIMES;
 use super::draw::line;
 use super::font::text;
-use super::straight::{Straight, pixels};
+use super::rectified::{Rectified, pixels};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Frame, Image, PixelFormat};
@@ -34,7 +34,7 @@ const NO_SECTOR: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct Overlay {
     ideal: Camera,
-    picture: Straight,
+    picture: Rectified,
     sectors: Sectors,
     up_camera: Option<DVec3>,
     image: Image,
@@ -57,7 +57,7 @@ impl Overlay {
         ideal.validate()?;
         let data = vec![0; 3 * ideal.size.pixels()];
         let image = Image { size: ideal.size, format: PixelFormat::Rgb8, data };
-        let picture = Straight::new(raw, ideal);
+        let picture = Rectified::new(raw, ideal);
         Ok(Self { ideal: *ideal, picture, sectors: Sectors::default(), up_camera: None, image })
     }
 
@@ -245,14 +245,14 @@ mod tests {
             interval_s: Some(0.1),
             invalid: None,
             prev_from_cur: None,
-            remaining_turn_rad_s: None,
+            residual_rotation_rad_s: None,
             heading: Heading::UNKNOWN,
             sectors,
             threat: None,
             flow: Some(flow),
             looming: None,
             cells: None,
-            tangent: None,
+            spherical_flow: None,
             latency: Duration::ZERO,
         }
     }

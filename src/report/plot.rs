@@ -44,7 +44,7 @@ pub(super) struct Plot<'a> {
 impl Plot<'_> {
     /// The plot as an `svg` element.
     pub(super) fn svg(&self) -> String {
-        let frame = Frame { x: self.x, y: self.y, height: self.height };
+        let frame = PlotArea { x: self.x, y: self.y, height: self.height };
         let mut svg = frame.begin(self.title);
         let [bottom, top] = self.y.map(|y| frame.at([self.x[0], y])[1]);
         for span in &self.spans {
@@ -99,14 +99,14 @@ impl Plot<'_> {
 }
 
 /// Where values lie in a drawing.
-pub(super) struct Frame {
+pub(super) struct PlotArea {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
     /// Of the whole drawing.
     pub(super) height: f64,
 }
 
-impl Frame {
+impl PlotArea {
     /// Width of the part between the axes.
     pub(super) const INNER: f64 = WIDTH - LEFT - RIGHT;
     /// What a drawing is higher than that part.
@@ -158,7 +158,7 @@ impl Frame {
         )
     }
 
-    /// A line through points, interrupted where one is not a number, held between the bounds of the vertical axis.
+    /// A line through points, interrupted where one is not a number, clamped to the bounds of the vertical axis.
     pub(super) fn curve(&self, points: &[[f64; 2]], class: &str) -> String {
         let mut path = String::new();
         let mut pen = 'M';

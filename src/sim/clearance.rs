@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::surface::Shape;
+use super::surface::Geometry;
 use super::{Surface, World};
 
 impl Surface {
@@ -11,11 +11,11 @@ impl Surface {
     pub fn distance_m(&self, point_world: DVec3) -> f64 {
         let p = self.local_from_world * (point_world - self.origin_world);
         match self.shape {
-            Shape::Plane => p.z,
-            Shape::Rectangle { half_m: [a, b] } => {
+            Geometry::Plane => p.z,
+            Geometry::Rectangle { half_m: [a, b] } => {
                 DVec3::new((p.x.abs() - a).max(0.0), (p.y.abs() - b).max(0.0), p.z).length()
             }
-            Shape::Cylinder { radius_m, length_m } => {
+            Geometry::Cylinder { radius_m, length_m } => {
                 let half_m = length_m / 2.0;
                 solid(DVec3::new(
                     DVec2::new(p.x, p.y).length() - radius_m,
@@ -23,7 +23,7 @@ impl Surface {
                     f64::MIN,
                 ))
             }
-            Shape::Cuboid { half_m } => solid(p.abs() - half_m),
+            Geometry::Cuboid { half_m } => solid(p.abs() - half_m),
         }
     }
 }

@@ -8,12 +8,12 @@
 //! ```
 //! use viewsphere::camera::{Camera, Lens, Pose};
 //! use viewsphere::frame::Size;
-//! use viewsphere::sim::{RayTable, render, scenes};
+//! use viewsphere::sim::{RayTable, reference_render, scenes};
 //!
 //! # fn main() -> viewsphere::Result<()> {
 //! let size = Size::new(64, 48);
 //! let camera = Camera { size, f_u: 40.0, f_v: 40.0, u_0: 31.5, v_0: 23.5, lens: Lens::NONE };
-//! let view = render(&scenes::frontal_wall(4.0)?, &RayTable::new(&camera)?, &scenes::START);
+//! let view = reference_render(&scenes::frontal_wall(4.0)?, &RayTable::new(&camera)?, &scenes::START);
 //! assert!((view.nearness_per_m.data[24 * 64 + 32] - 0.25).abs() < 1e-3);
 //! # Ok(())
 //! # }
@@ -26,11 +26,11 @@ pub mod course;
 pub mod data_set;
 pub mod flight;
 mod random;
+mod ray_query;
 mod rays;
-mod render;
+mod reference_render;
+mod renderer;
 pub mod scenes;
-mod sight;
-mod sightings;
 mod surface;
 mod texture;
 mod truth;
@@ -39,10 +39,10 @@ mod world;
 
 pub use course::{Course, CourseKind};
 pub use random::Random;
+pub use ray_query::{query_rays, ray_grid};
 pub use rays::RayTable;
-pub use render::{View, nearness, render};
-pub use sight::{Sight, SightConfig};
-pub use sightings::{ray_grid, sightings};
+pub use reference_render::{Rendering, nearness, reference_render};
+pub use renderer::{Renderer, RendererConfig};
 pub use surface::{Form, Surface};
-pub use truth::{Motion, Seen, displacement};
+pub use truth::{Seen, Twist, displacement};
 pub use world::{Hit, World};

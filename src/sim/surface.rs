@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 pub struct Surface {
     pub(super) origin_world: DVec3,
     pub(super) local_from_world: DMat3,
-    pub(super) shape: Shape,
+    pub(super) shape: Geometry,
     /// Nothing of it is farther from its origin.
     pub(super) reach_m: f64,
     form: Form,
@@ -55,7 +55,7 @@ pub enum Form {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Shape {
+pub(super) enum Geometry {
     /// z = 0, without end.
     Plane,
     /// z = 0 between ±half.
@@ -66,7 +66,7 @@ pub(super) enum Shape {
     Cuboid { half_m: DVec3 },
 }
 
-impl Shape {
+impl Geometry {
     /// Whether any of the shape lies where `normal` · place + `offset_m` is not negative, in its own frame. May be wrong
     /// in saying yes.
     pub(super) fn reaches(&self, normal: DVec3, offset_m: f64) -> bool {
@@ -110,7 +110,7 @@ impl Surface {
         let normal = direction("plane normal", normal_world)?;
         let (u, v) = normal.any_orthonormal_pair();
         let form = Form::Plane { point_world, normal_world };
-        Self::new(point_world, DMat3::from_cols(u, v, normal), Shape::Plane, form)
+        Self::new(point_world, DMat3::from_cols(u, v, normal), Geometry::Plane, form)
     }
 
     /// A rectangle, seen from both sides. `to_right` and `to_top` lead from its centre to the middles of two of its edges.
@@ -130,7 +130,7 @@ impl Surface {
         let half_m = [to_right.length(), to_top.length()];
         let form = Form::Rectangle { centre_world, to_right, to_top };
         let world_from_local = DMat3::from_cols(u, normal.cross(u), normal);
-        Self::new(centre_world, world_from_local, Shape::Rectangle { half_m }, form)
+        Self::new(centre_world, world_from_local, Geometry::Rectangle { half_m }, form)
     }
 
     /// A cylinder with lids, from the centre of one to that of the other.
@@ -143,7 +143,7 @@ impl Surface {
         let length_m = (top_world - base_world).length();
         positive("cylinder radius", radius_m)?;
         let form = Form::Cylinder { base_world, top_world, radius_m };
-        Self::new(base_world, DMat3::from_cols(u, v, axis), Shape::Cylinder { radius_m, length_m }, form)
+        Self::new(base_world, DMat3::from_cols(u, v, axis), Geometry::Cylinder { radius_m, length_m }, form)
     }
 
     /// A box of these edge lengths, turned by a rotation.
@@ -157,7 +157,7 @@ impl Surface {
             return Err(Error::parameter("world_from_box", world_from_box, "a rotation"));
         }
         let form = Form::Cuboid { centre_world, world_from_box, edges_m };
-        Self::new(centre_world, world_from_box, Shape::Cuboid { half_m: edges_m / 2.0 }, form)
+        Self::new(centre_world, world_from_box, Geometry::Cuboid { half_m: edges_m / 2.0 }, form)
     }
 
     /// What the surface was made of.
@@ -165,15 +165,15 @@ impl Surface {
         self.form
     }
 
-    fn new(origin_world: DVec3, world_from_local: DMat3, shape: Shape, form: Form) -> Result<Self> {
+    fn new(origin_world: DVec3, world_from_local: DMat3, shape: Geometry, form: Form) -> Result<Self> {
         if !origin_world.is_finite() {
             return Err(Error::parameter("place of a surface", origin_world, "three finite coordinates"));
         }
         let reach_m = match shape {
-            Shape::Plane => f64::INFINITY,
-            Shape::Rectangle { half_m: [a, b] } => a.hypot(b),
-            Shape::Cylinder { radius_m, length_m } => radius_m.hypot(length_m),
-            Shape::Cuboid { half_m } => half_m.length(),
+            Geometry::Plane => f64::INFINITY,
+            Geometry::Rectangle { half_m: [a, b] } => a.hypot(b),
+            Geometry::Cylinder { radius_m, length_m } => radius_m.hypot(length_m),
+            Geometry::Cuboid { half_m } => half_m.length(),
         };
         Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape, reach_m, form })
     }
@@ -181,7 +181,7 @@ impl Surface {
     /// The length after which the texture repeats along u, if u runs around something.
     pub(super) fn period_m(&self, face: u32) -> Option<f64> {
         match self.shape {
-            Shape::Cylinder { radius_m, .. } if face == 0 => Some(std::f64::consts::TAU * radius_m),
+            Geometry::Cylinder { radius_m, .. } if face == 0 => Some(std::f64::consts::TAU * radius_m),
             _ => None,
         }
     }
@@ -198,12 +198,12 @@ impl Surface {
         let o = self.local_from_world * (origin_world - self.origin_world);
         let d = self.local_from_world * direction_world;
         let met = match self.shape {
-            Shape::Plane => flat(o, d, 0.0, 0),
-            Shape::Rectangle { half_m: [a, b] } => {
+            Geometry::Plane => flat(o, d, 0.0, 0),
+            Geometry::Rectangle { half_m: [a, b] } => {
                 flat(o, d, 0.0, 0).filter(|met| met.uv_m[0].abs() <= a && met.uv_m[1].abs() <= b)
             }
-            Shape::Cylinder { radius_m, length_m } => cylinder(o, d, radius_m, length_m),
-            Shape::Cuboid { half_m } => cuboid(o, d, half_m),
+            Geometry::Cylinder { radius_m, length_m } => cylinder(o, d, radius_m, length_m),
+            Geometry::Cuboid { half_m } => cuboid(o, d, half_m),
         }?;
         let normal = if met.normal.dot(d) > 0.0 { -met.normal } else { met.normal };
         let normal_world = self.local_from_world.transpose() * normal;

@@ -14,7 +14,7 @@ const HIDDEN: f64 = 1e-6;
 
 /// The motion of a camera relative to a world at rest, in the camera's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct Twist {
     /// Velocity, m/s.
     pub velocity_m_s: DVec3,
     /// Angular rate, rad/s.
@@ -34,18 +34,18 @@ pub struct Seen {
 
 impl Seen {
     /// How the bearing moves: −ρ(v − p(pᵀv)) + p × ω, rad/s.
-    pub fn flow_rad_s(&self, motion: &Motion) -> DVec3 {
+    pub fn flow_rad_s(&self, motion: &Twist) -> DVec3 {
         let (p, v) = (self.bearing, motion.velocity_m_s);
         -self.nearness_per_m * (v - p * p.dot(v)) + p.cross(motion.rate_rad_s)
     }
 
     /// ρ‖v‖, 1/s: one over the time in which the camera flies the distance of what is seen.
-    pub fn nearness_rate_per_s(&self, motion: &Motion) -> f64 {
+    pub fn nearness_rate_per_s(&self, motion: &Twist) -> f64 {
         self.nearness_per_m * motion.velocity_m_s.length()
     }
 
     /// The divergence of the flow on the view sphere, 1/s. It depends on the surface's normal, not on how it bends.
-    pub fn divergence_per_s(&self, motion: &Motion) -> f64 {
+    pub fn divergence_per_s(&self, motion: &Twist) -> f64 {
         if self.nearness_per_m == 0.0 {
             return 0.0;
         }

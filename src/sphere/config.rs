@@ -36,7 +36,7 @@ pub struct Sphere {
     /// The upper quantile that a sector gives of its nearness rates and divergences, 0.5 to 0.99.
     pub quantile: f64,
     /// Cells that are trusted less are left out, 0.01 to 0.9.
-    pub least_trust: f64,
+    pub least_confidence: f64,
     /// Standard error of a fully trusted cell's flow, in pixels, above 0 and at most 10.
     pub noise_px: f64,
     /// Pixels within the frame's border over which a place becomes trusted, 0 to 1000.
@@ -53,7 +53,7 @@ impl Default for Sphere {
             window: 2,
             sectors: [24, 9],
             quantile: 0.8,
-            least_trust: 0.2,
+            least_confidence: 0.2,
             noise_px: 0.03,
             margin_px: 8.0,
         }
@@ -79,7 +79,7 @@ impl Sphere {
         }
         for (name, value, low, high) in [
             ("quantile", self.quantile, 0.5, 0.99),
-            ("least_trust", self.least_trust, 0.01, 0.9),
+            ("least_confidence", self.least_confidence, 0.01, 0.9),
             ("noise_px", self.noise_px, 1e-6, 10.0),
             ("margin_px", self.margin_px, 0.0, 1000.0),
         ] {

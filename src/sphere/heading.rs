@@ -132,7 +132,7 @@ mod tests {
         let grid = Grid { columns: 24, rows: 9, azimuth_rad: [-0.8, 0.8], elevation_rad: [0.6, -0.6] };
         let mut sectors = Sectors::unknown(grid);
         sectors.interval_s = 1.0;
-        let mut random = crate::kernels::cases::Random::new(5);
+        let mut random = crate::kernels::test_inputs::Random::new(5);
         for i in 0..grid.len() {
             let p = grid.bearing(i % 24, i / 24);
             let mut flow = (0.01 + 0.05 * f64::from(random.next())) * (p * p.dot(v) - v);

@@ -1,21 +1,21 @@
 //! The plan from a frame to the sectors of the view.
 
-use super::back::{Back, pinhole};
+use super::aggregate::{Aggregation, pinhole};
 use super::config::{Derotation, Sphere};
-use super::front::{Front, Map};
 use super::grid::{Cells, Grid};
 use super::motion::MOTION_LEN;
+use super::rectify::{Map, Rectification};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::flow::{Algorithm, Wanted};
 use crate::frame::{PixelFormat, Plane};
-use crate::kernels::prime;
+use crate::kernels::rotational_flow;
 use crate::plan::{BufId, Bufs, Fill, Plan, Port, PortKind, Shape, Step};
 use crate::sphere::Motion;
 
-/// What there is to look through.
+/// The cameras that a plan rectifies between.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Eye<'a> {
+pub(crate) struct Cameras<'a> {
     /// The camera that takes the frames.
     pub(crate) raw: &'a Camera,
     /// The pinhole whose pictures the flow is computed of.
@@ -28,19 +28,19 @@ pub(crate) struct Eye<'a> {
 
 /// Fields that are read beside the sectors, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fields {
-    /// Nearness rate, divergence, error and trust of each cell.
+pub struct ExtraOutputs {
+    /// Nearness rate, divergence, error and confidence of each cell.
     pub looming: bool,
-    /// Trust, place and rate of each cell.
+    /// Confidence, place and rate of each cell.
     pub cells: bool,
     /// The flow on the view sphere of each pixel.
-    pub tangent: bool,
+    pub spherical_flow: bool,
 }
 
 /// The plan for frames of this format, and the cells and sectors it sums the flow up in.
 ///
 /// Its inputs are `frame` and `motion`; its outputs are `sectors`, `flow` (from the current frame back to the previous one)
-/// and the [`Fields`] that are asked for. With `certainty`, what the frame does not show and what the mask hides is left
+/// and the [`ExtraOutputs`] that are asked for. With `certainty`, what the frame does not show and what the mask hides is left
 /// out of the estimator's neighbourhoods.
 ///
 /// # Errors
@@ -49,83 +49,83 @@ pub(crate) fn plan(
     algorithm: &Algorithm,
     certainty: bool,
     view: &Sphere,
-    eye: Eye<'_>,
+    cameras: Cameras<'_>,
     format: PixelFormat,
-    fields: Fields,
+    fields: ExtraOutputs,
 ) -> Result<(Plan, Cells, Grid)> {
     view.validate()?;
     algorithm.validate()?;
-    let primed = eye.gyro && view.derotation == Derotation::Primed;
-    let size = eye.ideal.size;
+    let primed = cameras.gyro && view.derotation == Derotation::Primed;
+    let size = cameras.ideal.size;
     size.validate()?;
-    eye.raw.size.validate()?;
-    if let Some(mask) = eye.mask {
+    cameras.raw.size.validate()?;
+    if let Some(mask) = cameras.mask {
         mask.validate()?;
-        if mask.size != eye.raw.size {
+        if mask.size != cameras.raw.size {
             return Err(Error::SizeMismatch {
                 what: "mask".to_owned(),
                 found: mask.size,
-                expected: eye.raw.size,
+                expected: cameras.raw.size,
             });
         }
     }
-    let grid = Grid::over(eye.ideal, view.sectors)?;
-    let cells = Cells::over(eye.ideal, view.cell);
+    let grid = Grid::over(cameras.ideal, view.sectors)?;
+    let cells = Cells::over(cameras.ideal, view.cell);
 
     let mut bufs = Bufs::default();
-    let front = Front::new(&mut bufs, eye, view, format);
+    let rectify = Rectification::new(&mut bufs, cameras, view, format);
     let motion = bufs.input("motion", MOTION_LEN);
     let found = bufs.computed("flow", Shape::planar(size, 2));
-    let prime = primed.then(|| bufs.computed("flow of the turn", Shape::planar(size, 2)));
+    let rotational = primed.then(|| bufs.computed("flow of the turn", Shape::planar(size, 2)));
     let wanted = Wanted { initial_flow: primed, certainty, confidence: false, evidence: true };
     let stages = algorithm.stages(&mut bufs, size, wanted);
-    let back = Back::new(&mut bufs, view, eye.ideal, &cells, &grid, fields);
+    let aggregate = Aggregation::new(&mut bufs, view, cameras.ideal, &cells, &grid, fields);
 
     let expand = |steps: &mut Vec<Step>, parity: usize, map: Option<Map>, slot: usize, label: &str| {
-        let gray = front.picture(steps, parity, map, label);
-        let shown = map.map_or(front.certainty, |map| map.certainty);
+        let gray = rectify.picture(steps, parity, map, label);
+        let shown = map.map_or(rectify.certainty, |map| map.certainty);
         steps.extend(stages.ingest(gray, certainty.then_some(shown), slot));
     };
     let ingest = [0, 1].map(|parity| {
-        let mut steps = vec![front.brightness(parity, format)];
-        if front.turned.is_none() {
-            expand(&mut steps, parity, front.map, parity, "undistort");
+        let mut steps = vec![rectify.brightness(parity, format)];
+        if rectify.turned.is_none() {
+            expand(&mut steps, parity, rectify.map, parity, "undistort");
         }
         steps
     });
     // The flow leads from the current frame back to the one before, so that it is known at the current frame's pixels.
     let pair = [0, 1].map(|parity| {
         let mut steps = Vec::new();
-        let slots = match front.turned {
+        let slots = match rectify.turned {
             None => [parity, 1 - parity],
             Some(turned) => {
-                expand(&mut steps, parity, front.map, 0, "undistort");
-                steps.extend(front.make(turned, motion, "turn"));
+                expand(&mut steps, parity, rectify.map, 0, "undistort");
+                steps.extend(rectify.make(turned, motion, "turn"));
                 expand(&mut steps, 1 - parity, Some(turned), 1, "undistort and turn");
                 [0, 1]
             }
         };
-        if let Some(prime) = prime {
-            steps.push(prime_step(eye.ideal, motion, prime));
+        if let Some(rotational) = rotational {
+            steps.push(rotational_flow_step(cameras.ideal, motion, rotational));
         }
-        steps.extend(stages.pair(slots, prime.unwrap_or(found), found));
+        steps.extend(stages.pair(slots, rotational.unwrap_or(found), found));
         let evidence = stages.evidence(slots);
-        let certainty = [front.certainty, front.turned.map_or(front.certainty, |map| map.certainty)];
-        let turn = if front.turned.is_some() { front.still } else { motion };
-        back.steps(&mut steps, evidence, certainty, found, [turn, motion]);
+        let certainty = [rectify.certainty, rectify.turned.map_or(rectify.certainty, |map| map.certainty)];
+        let turn = if rectify.turned.is_some() { rectify.still } else { motion };
+        aggregate.steps(&mut steps, evidence, certainty, found, [turn, motion]);
         steps
     });
-    let frame_kind = PortKind::Frame { size: eye.raw.size, format };
+    let frame_kind = PortKind::Frame { size: cameras.raw.size, format };
     let unknown = Fill::Values(Motion::UNKNOWN.values().to_vec());
-    let mut outputs = back.outputs();
+    let mut outputs = aggregate.outputs();
     outputs.push(Port::output("flow", PortKind::Flow { size }, found));
     let plan = Plan {
-        size: eye.raw.size,
-        setup: front.setup(),
+        size: cameras.raw.size,
+        setup: rectify.setup(),
         ingest,
         pair,
         inputs: vec![
-            Port::new("frame", frame_kind, front.frame, Fill::Required),
+            Port::new("frame", frame_kind, rectify.frame, Fill::Required),
             Port::new("motion", PortKind::Raw { len: MOTION_LEN }, motion, unknown),
         ],
         outputs,
@@ -136,6 +136,12 @@ pub(crate) fn plan(
     Ok((plan, cells, grid))
 }
 
-fn prime_step(ideal: &Camera, motion: BufId, flow: BufId) -> Step {
-    Step::new(&prime::KERNEL, "turn", pinhole(ideal), &[motion], &[(flow, Shape::planar(ideal.size, 2))])
+fn rotational_flow_step(ideal: &Camera, motion: BufId, flow: BufId) -> Step {
+    Step::new(
+        &rotational_flow::KERNEL,
+        "turn",
+        pinhole(ideal),
+        &[motion],
+        &[(flow, Shape::planar(ideal.size, 2))],
+    )
 }

@@ -11,7 +11,7 @@ use crate::kernels::sectors::CHANNELS;
 pub struct Sector {
     /// The share of the sector whose flow is trusted, 0 to 1. With 0 nothing else is known.
     pub coverage: f64,
-    /// The mean trust in that share, 0 to 1.
+    /// The mean confidence in that share, 0 to 1.
     pub confidence: f64,
     /// Nearness rate ρ‖v‖ in 1/s, the inverse of the time to contact along the bearing: lower quantile, median and upper
     /// quantile over the sector's cells. Negative where things recede.
@@ -40,7 +40,7 @@ pub struct Sectors {
     pub interval_s: f64,
     /// The sectors, row by row.
     pub sectors: Vec<Sector>,
-    /// `Σ w n nᵀ` of each sector's normals n = p × F (F in radians a frame, w the trust): the direction of motion is
+    /// `Σ w n nᵀ` of each sector's normals n = p × F (F in radians a frame, w the confidence): the direction of motion is
     /// normal to all of them.
     pub moments: Vec<DMat3>,
 }

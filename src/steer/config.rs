@@ -200,10 +200,10 @@ impl SteerConfig {
 
     /// The nearest command that is within the limits.
     pub(super) fn limited(&self, command: super::Command) -> super::Command {
-        let held = |angle: f64, most: f64| if angle.is_finite() { angle.clamp(-most, most) } else { 0.0 };
+        let clamped = |angle: f64, most: f64| if angle.is_finite() { angle.clamp(-most, most) } else { 0.0 };
         super::Command {
-            bank_rad: held(command.bank_rad, self.max_bank_rad),
-            climb_rad: held(command.climb_rad, self.max_climb_rad),
+            bank_rad: clamped(command.bank_rad, self.max_bank_rad),
+            climb_rad: clamped(command.climb_rad, self.max_climb_rad),
         }
     }
 }

@@ -45,7 +45,7 @@ impl Obstacles {
         &mut self,
         config: &SteerConfig,
         map: &DangerMap,
-        frame: Frame<'_>,
+        frame: ViewGeometry<'_>,
         [before_s, now_s]: [f64; 2],
     ) {
         let mut remembered = Vec::new();
@@ -75,7 +75,7 @@ impl Obstacles {
 
 /// Where a frame looks.
 #[derive(Clone, Copy)]
-pub(super) struct Frame<'a> {
+pub(super) struct ViewGeometry<'a> {
     pub(super) ned_from_level: &'a DMat3,
     pub(super) camera_from_ned: &'a DMat3,
     /// The sectors of the view, in the camera's frame.
@@ -83,7 +83,7 @@ pub(super) struct Frame<'a> {
     pub(super) speed_m_s: f64,
 }
 
-impl Frame<'_> {
+impl ViewGeometry<'_> {
     /// Whether an obstacle lies within the view, or so far behind that it does not matter any more.
     fn shows(&self, obstacle: &Obstacle) -> bool {
         let place = obstacle.place_ned_m;

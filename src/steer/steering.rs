@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::arc::{self, Arc};
 use super::observation::{Moving, Observation, View};
-use super::obstacles::{Frame, Obstacle, Obstacles};
+use super::obstacles::{Obstacle, Obstacles, ViewGeometry};
 use super::simple::{self, Level};
 use super::{Command, DangerMap, Policy, SteerConfig};
 use crate::error::Result;
@@ -141,7 +141,7 @@ impl Steering {
         };
         self.before = Some((o.time_s, velocity));
         self.map.update(&self.config, view.sectors, &(camera_from_ned * ned_from_level));
-        let frame = Frame {
+        let frame = ViewGeometry {
             ned_from_level: &ned_from_level,
             camera_from_ned: &camera_from_ned,
             grid: &view.sectors.grid,

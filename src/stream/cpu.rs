@@ -7,7 +7,7 @@ use super::job::Job;
 use super::layout::{Holdings, Layout, Write};
 use super::stats::Stages;
 use crate::cpu::CpuExecutor;
-use crate::kernels::rows::SMALLEST_SHARE;
+use crate::kernels::parallel_rows::SMALLEST_SHARE;
 use crate::plan::pack::pack;
 use crate::plan::{Fill, Given, Outputs, Plan};
 

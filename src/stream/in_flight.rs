@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::job::Job;
 
 /// A frame in flight.
-pub(super) struct Flight<P> {
+pub(super) struct InFlight<P> {
     pub(super) frame: u64,
     /// Frames of different epochs are not paired.
     pub(super) epoch: u64,
@@ -46,13 +46,13 @@ pub(super) struct Last {
 }
 
 /// All frames in flight, oldest first, and the slots that are free.
-pub(super) struct Flights<P> {
-    pub(super) list: VecDeque<Flight<P>>,
+pub(super) struct InFlightList<P> {
+    pub(super) list: VecDeque<InFlight<P>>,
     free: Vec<usize>,
     slots: usize,
 }
 
-impl<P> Flights<P> {
+impl<P> InFlightList<P> {
     pub(super) fn new(slots: usize) -> Self {
         Self { list: VecDeque::with_capacity(slots), free: (0..slots).collect(), slots }
     }
@@ -73,41 +73,41 @@ impl<P> Flights<P> {
     }
 
     pub(super) fn place(&self, frame: u64) -> Option<usize> {
-        self.list.iter().position(|flight| flight.frame == frame && !flight.given_up)
+        self.list.iter().position(|entry| entry.frame == frame && !entry.given_up)
     }
 
     /// Takes a frame out and frees its slot.
-    pub(super) fn remove(&mut self, place: usize) -> Option<Flight<P>> {
-        let flight = self.list.remove(place)?;
-        self.free.push(flight.slot);
-        Some(flight)
+    pub(super) fn remove(&mut self, place: usize) -> Option<InFlight<P>> {
+        let entry = self.list.remove(place)?;
+        self.free.push(entry.slot);
+        Some(entry)
     }
 
     /// The oldest frame that is being computed.
     pub(super) fn started(&self) -> Option<(usize, usize, Job)> {
-        self.list.iter().enumerate().find_map(|(i, flight)| match flight.state {
-            State::Started(job) => Some((i, flight.slot, job)),
+        self.list.iter().enumerate().find_map(|(i, entry)| match entry.state {
+            State::Started(job) => Some((i, entry.slot, job)),
             _ => None,
         })
     }
 
     /// The oldest frame that waits, if fewer than `limit` are being computed.
-    pub(super) fn startable(&mut self, limit: usize) -> Option<&mut Flight<P>> {
-        let started = self.list.iter().filter(|flight| matches!(flight.state, State::Started(_))).count();
+    pub(super) fn startable(&mut self, limit: usize) -> Option<&mut InFlight<P>> {
+        let started = self.list.iter().filter(|entry| matches!(entry.state, State::Started(_))).count();
         if started >= limit {
             return None;
         }
-        self.list.iter_mut().find(|flight| matches!(flight.state, State::Waiting))
+        self.list.iter_mut().find(|entry| matches!(entry.state, State::Waiting))
     }
 
     /// The frame that is dropped for a newer one: the oldest that waits to be fetched, or else to be computed.
     pub(super) fn oldest_waiting(&self) -> Option<usize> {
-        let done = self.list.iter().position(|flight| matches!(flight.state, State::Done(_)));
-        done.or_else(|| self.list.iter().position(|flight| matches!(flight.state, State::Waiting)))
+        let done = self.list.iter().position(|entry| matches!(entry.state, State::Done(_)));
+        done.or_else(|| self.list.iter().position(|entry| matches!(entry.state, State::Waiting)))
     }
 }
 
-impl<P> Flight<P> {
+impl<P> InFlight<P> {
     /// What is to be computed of it after this frame.
     pub(super) fn job(&self, last: Option<Last>) -> Job {
         let previous = last.filter(|last| last.epoch == self.epoch);

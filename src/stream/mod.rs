@@ -30,7 +30,7 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::plan::{Given, Outputs, Plan};
-use in_flight::{Flights, Last};
+use in_flight::{InFlightList, Last};
 use stats::Window;
 use worker::Worker;
 
@@ -43,7 +43,7 @@ pub struct Stream<P = ()> {
     plan: Plan,
     config: StreamConfig,
     worker: Worker,
-    flights: Flights<P>,
+    flights: InFlightList<P>,
     next: u64,
     /// Counts the beginnings of the stream.
     epoch: u64,
@@ -100,7 +100,7 @@ impl<P> Stream<P> {
         let worker = Worker::new(backend, &plan, config)?;
         Ok(Self {
             id: STREAMS.fetch_add(1, Ordering::Relaxed),
-            flights: Flights::new(config.in_flight),
+            flights: InFlightList::new(config.in_flight),
             next: 0,
             epoch: 0,
             last: None,

@@ -17,12 +17,12 @@ impl<P> Stream<P> {
 
     fn recover(&mut self, adapter: String, reason: String) {
         self.stats.losses += 1;
-        for flight in self.flights.list.iter().filter(|flight| !flight.given_up) {
+        for entry in self.flights.list.iter().filter(|entry| !entry.given_up) {
             // Only the newest are remembered: the list must not grow.
             if self.lost.len() == StreamConfig::MAX_IN_FLIGHT {
                 self.lost.pop_front();
             }
-            self.lost.push_back(flight.frame);
+            self.lost.push_back(entry.frame);
         }
         self.flights.clear();
         self.last = None;

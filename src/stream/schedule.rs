@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::in_flight::{self, Flight, Last, State};
+use super::in_flight::{self, InFlight, Last, State};
 use super::{Done, Stream, Ticket};
 use crate::error::{Error, Result};
 use crate::plan::Given;
@@ -44,7 +44,7 @@ impl<P> Stream<P> {
             }
         };
         let submitted = Instant::now();
-        self.flights.list.push_back(Flight {
+        self.flights.list.push_back(InFlight {
             frame: self.next,
             epoch: self.epoch,
             slot,
@@ -70,11 +70,11 @@ impl<P> Stream<P> {
 
     fn make_room(&mut self) -> Result<()> {
         let oldest = self.flights.oldest_waiting().filter(|_| self.config.drop_oldest);
-        let Some(flight) = oldest.and_then(|place| self.flights.remove(place)) else {
+        let Some(entry) = oldest.and_then(|place| self.flights.remove(place)) else {
             return Err(self.busy());
         };
-        if let State::Done(_) = flight.state {
-            self.worker.release(flight.slot);
+        if let State::Done(_) = entry.state {
+            self.worker.release(entry.slot);
         }
         self.stats.dropped += 1;
         Ok(())
@@ -95,25 +95,25 @@ impl<P> Stream<P> {
     }
 
     fn mark_done(&mut self, place: usize) {
-        let flight = &mut self.flights.list[place];
-        if let State::Started(job) = flight.state {
-            flight.state = State::Done(job);
+        let entry = &mut self.flights.list[place];
+        if let State::Started(job) = entry.state {
+            entry.state = State::Done(job);
         }
-        if flight.given_up {
-            self.worker.release(flight.slot);
+        if entry.given_up {
+            self.worker.release(entry.slot);
             self.flights.remove(place);
         }
     }
 
     fn start_waiting(&mut self) -> Result<()> {
         let room = self.room();
-        while let Some(flight) = self.flights.startable(room) {
-            let job = flight.job(self.last);
-            self.worker.start(&self.plan, flight.slot, job)?;
-            flight.state = State::Started(job);
-            flight.before = self.last;
-            flight.previous = self.last.map_or(flight.frame, |last| last.frame);
-            let (frame, epoch) = (flight.frame, flight.epoch);
+        while let Some(entry) = self.flights.startable(room) {
+            let job = entry.job(self.last);
+            self.worker.start(&self.plan, entry.slot, job)?;
+            entry.state = State::Started(job);
+            entry.before = self.last;
+            entry.previous = self.last.map_or(entry.frame, |last| last.frame);
+            let (frame, epoch) = (entry.frame, entry.epoch);
             self.last = Some(Last { frame, epoch, parity: job.parity, carried: job.pair });
         }
         Ok(())
@@ -136,7 +136,7 @@ impl<P> Stream<P> {
             if !wait {
                 self.refresh()?;
             }
-            let done = |flight: &Flight<P>| flight.frame == frame && matches!(flight.state, State::Done(_));
+            let done = |entry: &InFlight<P>| entry.frame == frame && matches!(entry.state, State::Done(_));
             let done = self.flights.list.iter().any(done);
             // On the CPU the next frame can wait, and be dropped.
             if !done || self.worker.is_gpu() {
@@ -175,15 +175,15 @@ impl<P> Stream<P> {
     fn hand_over(&mut self, ticket: Ticket) -> Result<Taken<P>> {
         let gone = Error::Ticket { ticket: ticket.frame };
         let Some(place) = self.flights.place(ticket.frame) else { return Err(gone) };
-        let flight = &mut self.flights.list[place];
-        let waited = flight.submitted.elapsed();
-        let State::Done(job) = flight.state else {
-            flight.due = in_flight::due(Instant::now(), self.config.deadline);
+        let entry = &mut self.flights.list[place];
+        let waited = entry.submitted.elapsed();
+        let State::Done(job) = entry.state else {
+            entry.due = in_flight::due(Instant::now(), self.config.deadline);
             return Err(self.late(ticket.frame, waited));
         };
-        self.worker.take(&self.plan, flight.slot, job)?;
-        let Some(flight) = self.flights.remove(place) else { return Err(gone) };
-        let Flight { slot, previous, submitted, payload, .. } = flight;
+        self.worker.take(&self.plan, entry.slot, job)?;
+        let Some(entry) = self.flights.remove(place) else { return Err(gone) };
+        let InFlight { slot, previous, submitted, payload, .. } = entry;
         self.stats.done += 1;
         let latency = submitted.elapsed();
         if job.pair {
@@ -198,8 +198,8 @@ impl<P> Stream<P> {
     /// As [`Stream::wait`].
     pub fn finish(&mut self, ticket: Ticket) -> Result<()> {
         self.find(ticket)?;
-        let flight = self.flights.place(ticket.frame).map(|place| &self.flights.list[place]);
-        let (due, submitted) = flight.map_or((None, Instant::now()), |flight| (flight.due, flight.submitted));
+        let entry = self.flights.place(ticket.frame).map(|place| &self.flights.list[place]);
+        let (due, submitted) = entry.map_or((None, Instant::now()), |entry| (entry.due, entry.submitted));
         let done = self.bring(ticket.frame, true, due);
         if self.recovered(done)? {
             return Ok(());
@@ -219,15 +219,15 @@ impl<P> Stream<P> {
     pub(super) fn give_up(&mut self, frame: u64) {
         let Some(place) = self.flights.place(frame) else { return };
         self.stats.dropped += 1;
-        let flight = &mut self.flights.list[place];
-        if let State::Started(job) = flight.state {
+        let entry = &mut self.flights.list[place];
+        if let State::Started(job) = entry.state {
             if self.worker.is_gpu() {
                 // It cannot be called back. It stays a part of the stream, and its slot is free when it is done.
-                flight.given_up = true;
+                entry.given_up = true;
                 return;
             }
             // The next frame takes the same parity. What the host has given may have replaced what it would find there.
-            self.last = flight.before.map(|last| Last { carried: last.carried && !job.replaced, ..last });
+            self.last = entry.before.map(|last| Last { carried: last.carried && !job.replaced, ..last });
         }
         self.flights.remove(place);
     }

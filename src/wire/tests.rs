@@ -32,14 +32,14 @@ fn message(invalid: Option<Invalid>, detail: bool) -> CueMessage {
         interval_s: Some(0.04),
         invalid,
         prev_from_cur: None,
-        remaining_turn_rad_s: None,
+        residual_rotation_rad_s: None,
         heading: Heading { direction: DVec3::Z, error_rad: 0.01 },
         sectors: &sectors(),
         threat: Some(Threat { azimuth_rad: -0.1, elevation_rad: 0.0, time_s: 1.5, sectors: 1, alarm: true }),
         flow: None,
         looming: None,
         cells: None,
-        tangent: None,
+        spherical_flow: None,
         latency: Duration::ZERO,
     };
     let timing = Timing { age_ms: 4.000_4, latency_ms: 3.5, dropped: 2 };

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, Lens, world_from_body};
 use viewsphere::frame::{PixelFormat, Size};
 use viewsphere::io::picture;
-use viewsphere::kernels::{lens_map, remap};
+use viewsphere::kernels::{remap, undistort_map};
 
 use crate::data;
 
@@ -101,13 +101,13 @@ fn the_map_is_that_of_opencv() {
 
 /// The map and the certainty of `out` in `raw`, by the kernel's reference.
 fn mapped(raw: &Camera, out: &Camera, raw_from_out: &DMat3) -> (Vec<f32>, Vec<f32>) {
-    let params = lens_map::Params::new(out, raw);
+    let params = undistort_map::Params::new(out, raw);
     let mask = vec![1.0; raw.size.stride() * raw.size.height as usize];
     let row = out.size.stride() * out.size.height as usize;
     let (mut map, mut certainty) = (vec![f32::NAN; 2 * row], vec![f32::NAN; row]);
-    (lens_map::KERNEL.reference)(
+    (undistort_map::KERNEL.reference)(
         bytemuck::bytes_of(&params),
-        &[&lens_map::motion(raw_from_out), &mask],
+        &[&undistort_map::motion(raw_from_out), &mask],
         &mut [&mut map, &mut certainty],
     );
     (map, certainty)

@@ -2,7 +2,7 @@
 
 use viewsphere::flow::Farneback;
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
-use viewsphere::kernels::{cases::Random, certain_expansion_x, certain_expansion_y, tables};
+use viewsphere::kernels::{normalized_expansion_x, normalized_expansion_y, tables, test_inputs::Random};
 
 use crate::need;
 use crate::pair::{Beside, On, flow_with};
@@ -140,7 +140,7 @@ fn no_certainty_gives_no_flow() {
 }
 
 #[test]
-fn certainties_out_of_range_are_held_within_it() {
+fn certainties_out_of_range_are_clamped_to_it() {
     let held = frames(true, |x, y| if near_logo(x, y, 0) { 0.0 } else { 1.0 });
     let wild = frames(true, |x, y| if near_logo(x, y, 0) { f32::NAN } else { 7.0 + x as f32 });
     assert_eq!(flow_on_cpu(true, &held), flow_on_cpu(true, &wild));
@@ -179,9 +179,9 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
     }
     let applicability = tables::applicability(5, 1.2);
     let mut moments = vec![0.0; 8 * weighted.len()];
-    let params = certain_expansion_y::Params { width: size.width, height: size.height, radius: 5 };
+    let params = normalized_expansion_y::Params { width: size.width, height: size.height, radius: 5 };
     let weights = tables::applicability_from(&applicability.weights, 5);
-    (certain_expansion_y::KERNEL.reference)(
+    (normalized_expansion_y::KERNEL.reference)(
         bytemuck::bytes_of(&params),
         &[&weighted, &certainty, &weights],
         &mut [&mut moments],
@@ -189,8 +189,8 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
     let mut quad = vec![f32::NAN; 4 * weighted.len()];
     let mut cross_term = vec![f32::NAN; weighted.len()];
     let mut known = vec![f32::NAN; weighted.len()];
-    (certain_expansion_x::KERNEL.reference)(
-        bytemuck::bytes_of(&certain_expansion_x::Params::new(size, 5)),
+    (normalized_expansion_x::KERNEL.reference)(
+        bytemuck::bytes_of(&normalized_expansion_x::Params::new(size, 5)),
         &[&moments, &tables::applicability_from(&applicability.weights, 8)],
         &mut [&mut quad, &mut cross_term, &mut known],
     );

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use viewsphere::Error;
 use viewsphere::flow::{Algorithm, Farneback, FlowOptions, Initial, Outside, Update, Window, plan};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
-use viewsphere::kernels::cases::Random;
+use viewsphere::kernels::test_inputs::Random;
 
 use crate::need;
 use crate::pair::{On, flow};

@@ -3,7 +3,7 @@
 
 use viewsphere::flow::{Algorithm, Parameters};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
-use viewsphere::kernels::cases::Random;
+use viewsphere::kernels::test_inputs::Random;
 use viewsphere::{Backend, Config, Engine};
 
 use crate::need;

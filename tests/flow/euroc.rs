@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 use viewsphere::flow::Farneback;
 use viewsphere::imu::GyroConfig;
 use viewsphere::io::{camera, gyro_log, picture};
-use viewsphere::sphere::{Derotation, Fields, Sphere};
+use viewsphere::sphere::{Derotation, ExtraOutputs, Sphere};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
 use crate::data;
@@ -63,7 +63,7 @@ fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64
             camera_from_gyro: body_from_camera.transpose(),
             ..GyroConfig::default()
         }),
-        fields: Fields { looming: true, tangent: true, ..Fields::default() },
+        fields: ExtraOutputs { looming: true, spherical_flow: true, ..ExtraOutputs::default() },
         ..PipelineConfig::default()
     };
     let mut pipeline =
@@ -88,16 +88,19 @@ fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64
         let stride = ideal.size.stride();
         let cells = pipeline.cells().size;
         let cue = pipeline.process(&frame, time_s).unwrap_or_else(|error| panic!("{error}"));
-        if let (Some(now), Some(then), Some((looming, tangent))) = (at, before, cue.looming.zip(cue.tangent))
+        if let (Some(now), Some(then), Some((looming, spherical_flow))) =
+            (at, before, cue.looming.zip(cue.spherical_flow))
         {
             assert_eq!(cue.invalid, None);
             let step = truth[now].world_from_camera.transpose() * (truth[now].place - truth[then].place);
             for y in (0..ideal.size.height as usize).step_by(3) {
                 for x in (0..ideal.size.width as usize).step_by(3) {
-                    let trust = looming[(4 * (y / 8) + 3) * cells.stride() + x / 8];
-                    let Some(p) = ideal.ray([x as f64, y as f64]).filter(|_| trust >= 0.3) else { continue };
+                    let confidence = looming[(4 * (y / 8) + 3) * cells.stride() + x / 8];
+                    let Some(p) = ideal.ray([x as f64, y as f64]).filter(|_| confidence >= 0.3) else {
+                        continue;
+                    };
                     let flow = DVec3::from_array(
-                        [0, 1, 2].map(|channel| f64::from(tangent[(3 * y + channel) * stride + x])),
+                        [0, 1, 2].map(|channel| f64::from(spherical_flow[(3 * y + channel) * stride + x])),
                     );
                     let normal = p.cross(step).normalize();
                     angles.push((p - flow).normalize().dot(normal).abs().asin().to_degrees());

@@ -13,10 +13,10 @@ use crate::{data, need};
 
 /// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a
 /// unit, is what our fields' distance from OpenCV's may add.
-const BOUNDS: Figures = [0.0006, 0.006];
+const BOUNDS: Errors = [0.0006, 0.006];
 
 /// Mean endpoint error in pixels and mean angular error in degrees.
-type Figures = [f64; 2];
+type Errors = [f64; 2];
 
 /// A pair and the errors of OpenCV's fields with the settings light, heavy and heavy-gauss.
 struct Pair {
@@ -24,7 +24,7 @@ struct Pair {
     images: [&'static str; 2],
     truth: &'static str,
     mask: Option<&'static str>,
-    figures: [Figures; 3],
+    figures: [Errors; 3],
 }
 
 const MASK: Option<&str> = Some("yosemite/derived_mask_land.png");

@@ -4,7 +4,7 @@ use viewsphere::camera::{Camera, Lens};
 use viewsphere::flow::Farneback;
 use viewsphere::frame::Size;
 use viewsphere::io::picture;
-use viewsphere::sphere::{Fields, Sphere};
+use viewsphere::sphere::{ExtraOutputs, Sphere};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
 use crate::data;
@@ -13,7 +13,7 @@ use crate::quantile::quantile;
 /// Frames a second.
 const RATE_HZ: f64 = 60.0;
 /// What is trusted less is not compared: towards the end the floor is near, and the pictures are a blur.
-const LEAST_TRUST: f32 = 0.15;
+const LEAST_CONFIDENCE: f32 = 0.15;
 
 /// A camera of about the right field of view: what is compared does not depend on it.
 fn camera() -> Camera {
@@ -24,8 +24,8 @@ fn camera() -> Camera {
 fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
     let config = PipelineConfig {
         algorithm: Farneback::accurate().into(),
-        sphere: Sphere { window: 12, least_trust: 0.01, ..Sphere::default() },
-        fields: Fields { looming: true, ..Fields::default() },
+        sphere: Sphere { window: 12, least_confidence: 0.01, ..Sphere::default() },
+        fields: ExtraOutputs { looming: true, ..ExtraOutputs::default() },
         ..PipelineConfig::default()
     };
     let mut pipeline =
@@ -42,7 +42,7 @@ fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
         // The cell in the middle, where the divergence on the sphere is that in the plane: 2/τ over flat ground below.
         let stride = cells.size.stride();
         let at = |channel: usize| looming[(4 * 15 + channel) * stride + 20];
-        if at(3) >= LEAST_TRUST {
+        if at(3) >= LEAST_CONFIDENCE {
             rates.push((f64::from(number) - 0.5, 0.5 * RATE_HZ * f64::from(at(1))));
         }
     }

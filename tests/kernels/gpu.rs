@@ -9,7 +9,7 @@ use viewsphere::flow;
 use viewsphere::frame::Size;
 use viewsphere::gpu::{Finished, Gpu, GpuExecutor, GpuOptions, Tuning, reflect_variant};
 use viewsphere::kernel::{Kernel, Variant};
-use viewsphere::kernels::{luma, weigh, window_y};
+use viewsphere::kernels::{luma, premultiply, window_y};
 
 use crate::need;
 
@@ -42,7 +42,7 @@ fn a_kernel_is_compiled_once_for_a_device_and_its_clones() {
     assert_eq!(gpu.pipelines(), 1);
     assert_eq!(run(&gpu.clone(), &luma::KERNEL).unwrap(), first);
     assert_eq!(gpu.pipelines(), 1, "the same kernel was compiled again");
-    run(&gpu.clone(), &weigh::KERNEL).unwrap();
+    run(&gpu.clone(), &premultiply::KERNEL).unwrap();
     assert_eq!(gpu.pipelines(), 2, "what a clone compiles is kept for all");
 }
 

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use viewsphere::frame::Size;
 use viewsphere::gpu::Gpu;
 use viewsphere::kernel::Kernel;
-use viewsphere::kernels::{looming, prime, tangent};
+use viewsphere::kernels::{looming, rotational_flow, spherical_flow};
 use viewsphere::sphere::{Heading, Motion, model};
 
 use crate::need;
@@ -25,8 +25,8 @@ fn run(kernel: &Kernel, params: &[u8], inputs: &[&[f32]], size: Size, channels: 
     std::iter::once(reference).chain(need::gpu_if_any().map(on_gpu)).collect()
 }
 
-fn pinhole() -> tangent::Params {
-    tangent::Params {
+fn pinhole() -> spherical_flow::Params {
+    spherical_flow::Params {
         width: SIZE.width,
         height: SIZE.height,
         focal: [FOCAL as f32; 2],
@@ -59,14 +59,14 @@ fn world(prev_from_cur: DMat3, moved: DVec3) -> (Vec<f32>, Vec<[DVec3; 2]>) {
 }
 
 #[test]
-fn the_tangent_flow_is_that_of_the_moved_points() {
+fn the_spherical_flow_is_that_of_the_moved_points() {
     // 30 m/s and a roll of 150 degrees a second, at 30 frames a second.
     let prev_from_cur =
         DMat3::from_rotation_z(-5f64.to_radians()) * DMat3::from_rotation_y(2f64.to_radians());
     let (flow, bearings) = world(prev_from_cur, DVec3::new(0.1, -0.05, 1.0));
     let motion = Motion { prev_from_cur, heading: Heading::UNKNOWN }.values();
     let stride = SIZE.stride();
-    for found in run(&tangent::KERNEL, bytemuck::bytes_of(&pinhole()), &[&flow, &motion], SIZE, 3) {
+    for found in run(&spherical_flow::KERNEL, bytemuck::bytes_of(&pinhole()), &[&flow, &motion], SIZE, 3) {
         let mut largest: f64 = 0.0;
         let mut behind = 0;
         for (i, [before, now]) in bearings.iter().enumerate() {
@@ -91,8 +91,9 @@ fn the_tangent_flow_is_that_of_the_moved_points() {
 fn a_turn_alone_leaves_nothing() {
     let prev_from_cur = DMat3::from_rotation_x(0.03) * DMat3::from_rotation_z(0.08);
     let motion = Motion { prev_from_cur, heading: Heading::UNKNOWN }.values();
-    for flow in run(&prime::KERNEL, bytemuck::bytes_of(&pinhole()), &[&motion], SIZE, 2) {
-        for found in run(&tangent::KERNEL, bytemuck::bytes_of(&pinhole()), &[&flow, &motion], SIZE, 3) {
+    for flow in run(&rotational_flow::KERNEL, bytemuck::bytes_of(&pinhole()), &[&motion], SIZE, 2) {
+        for found in run(&spherical_flow::KERNEL, bytemuck::bytes_of(&pinhole()), &[&flow, &motion], SIZE, 3)
+        {
             // A pixel is up to 1/53 of a radian.
             let largest = found.iter().fold(0.0, |largest: f32, value| largest.max(value.abs()));
             assert!(largest < 2e-6, "{largest}");
@@ -132,7 +133,7 @@ fn errors_of_cells(pitch: f64) -> Vec<[f64; 2]> {
         pitch: [pitch as f32; 2],
         origin: first,
         noise: 1e-5,
-        least_trust: 0.2,
+        least_confidence: 0.2,
     };
     let heading = Heading { direction: v.normalize(), error_rad: 1e-3 };
     let motion = Motion { prev_from_cur: DMat3::IDENTITY, heading }.values();

@@ -6,7 +6,7 @@ use viewsphere::sim::World;
 use viewsphere::sim::scenes;
 
 use crate::quantile::quantile;
-use crate::straight::{Flight, fly, true_rates_hz};
+use crate::straight::{FlightPath, fly, true_rates_hz};
 
 /// Seconds before contact at which the sectors are looked at.
 const CONTACT_S: [f64; 5] = [4.0, 3.0, 1.6, 1.0, 0.7];
@@ -20,8 +20,11 @@ fn errors(
     near: f64,
 ) -> Vec<Vec<f64>> {
     let world = world(speed_m_s).unwrap_or_else(|error| panic!("{error}"));
-    let flight =
-        Flight { start_world: DVec3::ZERO, velocity_world: DVec3::Z * speed_m_s, omega_rad_s: DVec3::ZERO };
+    let flight = FlightPath {
+        start_world: DVec3::ZERO,
+        velocity_world: DVec3::Z * speed_m_s,
+        omega_rad_s: DVec3::ZERO,
+    };
     let mut all = Vec::new();
     for contact_s in CONTACT_S {
         let time_s = distance_m / speed_m_s - contact_s;

@@ -11,8 +11,8 @@ mod need;
 mod pipeline;
 #[path = "../common/quantile.rs"]
 mod quantile;
+mod renderer;
 mod sample;
-mod sight;
 mod straight;
 mod truth;
 mod turning;

@@ -10,7 +10,7 @@ const FRAMES: usize = 60;
 /// Flies for so many frames, 320 by 240 pixels through a lens with noise, and gives those that were measured.
 fn measured(world: &str, seed: u64) -> Vec<Measured> {
     let config = FlightConfig { measure: true, ..FlightConfig::default() };
-    assert!(config.sensor == Sensor::Images && config.sight.noise_levels > 0.0);
+    assert!(config.sensor == Sensor::Images && config.renderer.noise_levels > 0.0);
     assert!(config.camera.lens.coefficients[0] != 0.0 && config.camera.size.width == 320);
     let course = world.parse::<CourseKind>().unwrap().course(seed).unwrap();
     let mut flight = Flight::new([Backend::Cpu, Backend::Cpu], &course, &config).unwrap();

@@ -5,14 +5,14 @@ use viewsphere::camera::{Camera, Lens};
 use viewsphere::frame::{Image, Plane, Size};
 use viewsphere::imu::{GyroConfig, GyroSample};
 use viewsphere::pipeline::Invalid;
-use viewsphere::sim::{RayTable, render, scenes};
-use viewsphere::sphere::{Derotation, Fields, Heading, Sectors, Sphere};
+use viewsphere::sim::{RayTable, reference_render, scenes};
+use viewsphere::sphere::{Derotation, ExtraOutputs, Heading, Sectors, Sphere};
 use viewsphere::{Backend, Error, Pipeline, PipelineConfig};
 
 use crate::need;
-use crate::straight::{Flight, camera};
+use crate::straight::{FlightPath, camera};
 
-const FLIGHT: Flight = Flight {
+const FLIGHT: FlightPath = FlightPath {
     start_world: DVec3::ZERO,
     velocity_world: DVec3::new(0.5, 0.0, 10.0),
     omega_rad_s: DVec3::new(0.1, -0.3, 0.8),
@@ -31,7 +31,7 @@ fn frames(camera: &Camera, count: usize) -> Vec<(f64, Image)> {
     let world = good(scenes::yard(9.0));
     let rays = good(RayTable::new(camera));
     let time_s = |i: usize| 0.1 + i as f64 / 30.0;
-    (0..count).map(|i| (time_s(i), render(&world, &rays, &FLIGHT.pose(time_s(i))).image)).collect()
+    (0..count).map(|i| (time_s(i), reference_render(&world, &rays, &FLIGHT.pose(time_s(i))).image)).collect()
 }
 
 fn with_gyro() -> PipelineConfig {
@@ -191,7 +191,7 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
         Camera { size: Size::new(200, 150), f_u: 110.0, f_v: 110.0, u_0: 99.5, v_0: 74.5, lens: Lens::NONE };
     let config = PipelineConfig {
         ideal: Some(ideal),
-        fields: Fields { looming: true, cells: true, tangent: true },
+        fields: ExtraOutputs { looming: true, cells: true, spherical_flow: true },
         ..with_gyro()
     };
     let mut config_with_flow = config.clone();
@@ -206,7 +206,7 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
             if i == 0 {
                 continue;
             }
-            let lengths = [cue.looming, cue.cells, cue.tangent].map(|values| values.map(<[f32]>::len));
+            let lengths = [cue.looming, cue.cells, cue.spherical_flow].map(|values| values.map(<[f32]>::len));
             assert_eq!(lengths, [28 * 19 * 4, 28 * 19 * 5, 200 * 150 * 3].map(Some));
             assert_eq!(cue.flow.map(|flow| flow.size), Some(ideal.size));
             assert_eq!(cue.invalid, None);

@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use viewsphere::camera::{Camera, Lens, Pose};
 use viewsphere::frame::Size;
 use viewsphere::imu::GyroSample;
-use viewsphere::sim::{RayTable, World, render};
+use viewsphere::sim::{RayTable, World, reference_render};
 use viewsphere::sphere::Sectors;
 use viewsphere::{Backend, Cue, Pipeline, PipelineConfig};
 
@@ -13,7 +13,7 @@ pub(crate) const RATE_HZ: f64 = 30.0;
 
 /// A flight straight on, the camera turning steadily.
 #[derive(Clone, Copy)]
-pub(crate) struct Flight {
+pub(crate) struct FlightPath {
     /// Where the camera is at time 0, its axes along the world's.
     pub(crate) start_world: DVec3,
     pub(crate) velocity_world: DVec3,
@@ -21,7 +21,7 @@ pub(crate) struct Flight {
     pub(crate) omega_rad_s: DVec3,
 }
 
-impl Flight {
+impl FlightPath {
     pub(crate) fn pose(&self, time_s: f64) -> Pose {
         Pose {
             position_world: self.start_world + self.velocity_world * time_s,
@@ -45,7 +45,7 @@ pub(crate) fn camera() -> Camera {
 pub(crate) fn fly(
     config: PipelineConfig,
     world: &World,
-    flight: &Flight,
+    flight: &FlightPath,
     last_time_s: f64,
     frames: u32,
     mut show: impl FnMut(&Cue<'_>, &Camera),
@@ -65,7 +65,7 @@ pub(crate) fn fly(
             pipeline.push_gyro(GyroSample { time_s: gyro_s, gyro_rad_s: flight.omega_rad_s });
             gyro_s += 0.0025;
         }
-        let view = render(world, &rays, &flight.pose(time_s));
+        let view = reference_render(world, &rays, &flight.pose(time_s));
         let ideal = *pipeline.ideal();
         let cue = good(pipeline.process(&good(view.image.frame()), time_s));
         show(&cue, &ideal);
@@ -75,7 +75,7 @@ pub(crate) fn fly(
 /// The truth of each sector's median nearness rate, 1/s; none where less than half of it is something.
 pub(crate) fn true_rates_hz(
     world: &World,
-    flight: &Flight,
+    flight: &FlightPath,
     time_s: f64,
     sectors: &Sectors,
     ideal: &Camera,

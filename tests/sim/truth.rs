@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use viewsphere::camera::{Camera, Lens, Pose};
 use viewsphere::frame::{FlowField, Size};
 use viewsphere::sim::scenes::{self, START};
-use viewsphere::sim::{Motion, RayTable, Surface, World, displacement, render};
+use viewsphere::sim::{RayTable, Surface, Twist, World, displacement, reference_render};
 
 use crate::sample::sample;
 
@@ -106,7 +106,7 @@ fn shapes_that_are_none_are_errors() {
 }
 
 /// A camera that has moved for a time at constant rates in its own frame.
-fn after(pose: &Pose, motion: &Motion, time_s: f64) -> Pose {
+fn after(pose: &Pose, motion: &Twist, time_s: f64) -> Pose {
     // Near enough to a constant velocity for a difference that is symmetric in time.
     Pose {
         position_world: pose.position_world + pose.world_from_camera * motion.velocity_m_s * time_s,
@@ -115,8 +115,8 @@ fn after(pose: &Pose, motion: &Motion, time_s: f64) -> Pose {
     }
 }
 
-const MOTION: Motion =
-    Motion { velocity_m_s: DVec3::new(0.7, -0.4, 3.0), rate_rad_s: DVec3::new(0.3, -0.5, 0.9) };
+const MOTION: Twist =
+    Twist { velocity_m_s: DVec3::new(0.7, -0.4, 3.0), rate_rad_s: DVec3::new(0.3, -0.5, 0.9) };
 
 #[test]
 fn flow_and_divergence_are_those_of_finite_differences() {
@@ -153,7 +153,7 @@ fn flow_and_divergence_are_those_of_finite_differences() {
 
 #[test]
 fn a_wall_ahead_diverges_by_two_over_the_time_to_contact() {
-    let motion = Motion { velocity_m_s: DVec3::Z * 2.0, rate_rad_s: DVec3::ZERO };
+    let motion = Twist { velocity_m_s: DVec3::Z * 2.0, rate_rad_s: DVec3::ZERO };
     let seen = scenes::frontal_wall(5.0).unwrap().seen(&START, DVec3::Z);
     assert!((seen.divergence_per_s(&motion) - 0.8).abs() < 1e-12);
     assert!((seen.nearness_rate_per_s(&motion) - 0.4).abs() < 1e-12);
@@ -174,7 +174,7 @@ fn the_next_frame_read_along_the_true_flow_is_this_frame() {
         let rays = RayTable::new(&camera).unwrap();
         for (name, world) in worlds() {
             let poses = [off(0.2), off(0.45)];
-            let [now, then] = poses.map(|pose| render(&world, &rays, &pose).image);
+            let [now, then] = poses.map(|pose| reference_render(&world, &rays, &pose).image);
             let flow = displacement(&world, &camera, &rays, &poses[0], &poses[1]).unwrap();
             let (mut along, mut still) = (Vec::new(), Vec::new());
             for (i, uv) in flow.data.iter().enumerate().filter(|(_, uv)| FlowField::is_known(**uv)) {
@@ -206,7 +206,7 @@ fn pictures_are_free_of_aliasing() {
     let rays = RayTable::new(&camera).unwrap();
     for (name, world) in worlds() {
         let pose = off(0.5);
-        let image = render(&world, &rays, &pose).image;
+        let image = reference_render(&world, &rays, &pose).image;
         let gray = |u: f64, v: f64| {
             let direction = pose.world_from_camera * camera.ray([u, v]).unwrap();
             let hit = world.hit(pose.position_world, direction);
@@ -232,18 +232,18 @@ fn nearness_is_that_of_the_rays_and_pictures_are_the_same_twice() {
     let camera = camera(Size::new(97, 65), &BARREL);
     let rays = RayTable::new(&camera).unwrap();
     for (name, world) in worlds() {
-        let view = render(&world, &rays, &off(1.0));
-        assert_eq!(view, render(&world, &rays, &off(1.0)), "{name}");
+        let view = reference_render(&world, &rays, &off(1.0));
+        assert_eq!(view, reference_render(&world, &rays, &off(1.0)), "{name}");
         for (i, nearness) in view.nearness_per_m.data.iter().enumerate() {
             let bearing = rays.bearing(i as u32 % 97, i as u32 / 97).unwrap();
             // Against all surfaces, where the picture knows which ones can be met.
             assert_eq!(*nearness, world.seen(&off(1.0), bearing).nearness_per_m as f32, "{name} {i}");
         }
-        assert_ne!(view.image, render(&world, &rays, &START).image, "{name}");
+        assert_ne!(view.image, reference_render(&world, &rays, &START).image, "{name}");
     }
     let one = Camera { size: Size::new(1, 1), ..camera };
     assert_eq!(
-        render(&scenes::yard(5.0).unwrap(), &RayTable::new(&one).unwrap(), &START).image.data.len(),
+        reference_render(&scenes::yard(5.0).unwrap(), &RayTable::new(&one).unwrap(), &START).image.data.len(),
         1
     );
 }
@@ -253,7 +253,7 @@ fn where_the_lens_shows_nothing_it_is_black_and_unknown() {
     // Folds at a radius of 1.05, well inside this wide a picture.
     let folding = Camera { f_u: 40.0, f_v: 40.0, ..camera(Size::new(160, 120), &[-0.3, 0.0, 0.0, 0.0]) };
     let rays = RayTable::new(&folding).unwrap();
-    let view = render(&scenes::frontal_wall(2.0).unwrap(), &rays, &START);
+    let view = reference_render(&scenes::frontal_wall(2.0).unwrap(), &rays, &START);
     assert!(view.nearness_per_m.data[0].is_nan() && view.image.data[0] == 0 && rays.bearing(0, 0).is_none());
     assert!((view.nearness_per_m.data[60 * 160 + 80] - 0.5).abs() < 1e-3);
     let flow = displacement(&scenes::frontal_wall(2.0).unwrap(), &folding, &rays, &START, &off(0.1)).unwrap();

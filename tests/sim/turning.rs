@@ -5,21 +5,21 @@ use viewsphere::PipelineConfig;
 use viewsphere::camera::Camera;
 use viewsphere::frame::Size;
 use viewsphere::sim::{World, scenes};
-use viewsphere::sphere::{Derotation, Fields, Grid, Sphere, model};
+use viewsphere::sphere::{Derotation, ExtraOutputs, Grid, Sphere, model};
 
 use crate::quantile::quantile;
-use crate::straight::{Flight, RATE_HZ, fly};
+use crate::straight::{FlightPath, RATE_HZ, fly};
 
 fn config(derotation: Derotation) -> PipelineConfig {
     PipelineConfig {
         sphere: Sphere { derotation, ..Sphere::default() },
-        fields: Fields { tangent: true, looming: true, ..Fields::default() },
+        fields: ExtraOutputs { spherical_flow: true, looming: true, ..ExtraOutputs::default() },
         ..PipelineConfig::default()
     }
 }
 
 /// The flow of every pixel on the sphere, in radians a frame.
-fn tangents(field: &[f32], size: Size) -> impl Iterator<Item = (DVec3, [f64; 2])> {
+fn spherical_flows(field: &[f32], size: Size) -> impl Iterator<Item = (DVec3, [f64; 2])> {
     let stride = size.stride();
     (0..size.height as usize).flat_map(move |y| {
         (0..size.width as usize).map(move |x| {
@@ -54,9 +54,9 @@ fn mean_divergences_hz(looming: &[f32], ideal: &Camera, grid: &Grid) -> Vec<f64>
 }
 
 /// Degrees a second about the camera's axes: pitch, yaw, roll.
-fn turning(degrees_s: [f64; 3], velocity_world: DVec3) -> Flight {
+fn turning(degrees_s: [f64; 3], velocity_world: DVec3) -> FlightPath {
     let omega_rad_s = DVec3::from_array(degrees_s.map(f64::to_radians));
-    Flight { start_world: DVec3::ZERO, velocity_world, omega_rad_s }
+    FlightPath { start_world: DVec3::ZERO, velocity_world, omega_rad_s }
 }
 
 fn world() -> World {
@@ -69,8 +69,8 @@ fn a_turn_alone_leaves_next_to_nothing() {
         let flight = turning(degrees_s, DVec3::ZERO);
         let (mut squares, mut pixels, mut divergences, mut means) = (0.0, 0, Vec::new(), Vec::new());
         fly(config(Derotation::Before), &world(), &flight, 0.05, 3, |cue, ideal| {
-            let (Some(looming), Some(tangent)) = (cue.looming, cue.tangent) else { return };
-            for (flow, pixel) in tangents(tangent, ideal.size) {
+            let (Some(looming), Some(spherical_flow)) = (cue.looming, cue.spherical_flow) else { return };
+            for (flow, pixel) in spherical_flows(spherical_flow, ideal.size) {
                 if trusted(looming, pixel, ideal.size) {
                     squares += flow.length_squared() * ideal.f_u * ideal.f_v;
                     pixels += 1;
@@ -101,10 +101,10 @@ fn translational_error_px(derotation: Derotation, degrees_s: [f64; 3]) -> [f64; 
     let flight = turning(degrees_s, DVec3::new(0.0, 0.0, 10.0));
     let mut errors = Vec::new();
     fly(config(derotation), &world, &flight, 0.1, 4, |cue, ideal: &Camera| {
-        let (Some(looming), Some(tangent)) = (cue.looming, cue.tangent) else { return };
+        let (Some(looming), Some(spherical_flow)) = (cue.looming, cue.spherical_flow) else { return };
         let pose = flight.pose(cue.time_s);
         let moved = flight.velocity_camera(cue.time_s) / RATE_HZ;
-        for (found, pixel) in tangents(tangent, ideal.size) {
+        for (found, pixel) in spherical_flows(spherical_flow, ideal.size) {
             if !trusted(looming, pixel, ideal.size) {
                 continue;
             }

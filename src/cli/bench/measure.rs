@@ -22,7 +22,7 @@ const WARM_UP: u32 = 4;
 
 /// Everything measured for one backend and size.
 #[derive(Debug, Serialize)]
-pub(super) struct Figures {
+pub(super) struct BenchFigures {
     pub(super) backend: String,
     pub(super) width: u32,
     pub(super) height: u32,
@@ -68,7 +68,12 @@ pub(super) struct KernelFigures {
 }
 
 /// Measures one backend at one size.
-pub(super) fn measure(backend: &Backend, size: Size, algorithm: &Algorithm, frames: u32) -> Result<Figures> {
+pub(super) fn measure(
+    backend: &Backend,
+    size: Size,
+    algorithm: &Algorithm,
+    frames: u32,
+) -> Result<BenchFigures> {
     let config = Config { algorithm: algorithm.clone(), ..Config::default() };
     let (engine, engine_ms) = timed(|| Engine::new(backend.clone(), size, &config));
     let mut engine = engine?;
@@ -102,7 +107,7 @@ pub(super) fn measure(backend: &Backend, size: Size, algorithm: &Algorithm, fram
     let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     let known: Vec<&str> = kernels.iter().map(|figures| figures.kernel).collect();
     kernels.extend(optional.into_iter().filter(|figures| !known.contains(&figures.kernel)));
-    Ok(Figures {
+    Ok(BenchFigures {
         backend: name,
         width: size.width,
         height: size.height,

@@ -8,7 +8,7 @@ mod show;
 
 use clap::Args;
 
-use self::measure::Figures;
+use self::measure::BenchFigures;
 use super::backend::BackendArgs;
 use super::flow_args::FlowArgs;
 use super::{Outcome, print};
@@ -64,7 +64,7 @@ impl Bench {
         if self.pipeline {
             return self.pipelines(&config);
         }
-        let mut results: Vec<Figures> = Vec::new();
+        let mut results: Vec<BenchFigures> = Vec::new();
         for backend in self.backend.open_all()? {
             for &size in &self.size {
                 let figures = measure::measure(&backend, size, &config, self.frames)?;

@@ -46,7 +46,7 @@ pub(super) struct PipelineFigures {
 }
 
 /// Something that is run once a frame.
-type Frame<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
+type FrameFn<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
 
 /// Measures one backend at one size.
 pub(super) fn measure(
@@ -62,7 +62,7 @@ pub(super) fn measure(
     let mut stream = Engine::new(backend.clone(), size, &config)?;
     let mut pairs = Engine::new(backend.clone(), size, &config)?;
     let name = stream.adapter();
-    let mut contenders: Vec<(&'static str, Frame<'_>)> = vec![
+    let mut contenders: Vec<(&'static str, FrameFn<'_>)> = vec![
         ("flow alone, stream", Box::new(|number| stream.process(&image(number)?).map(|_| ()))),
         (
             "flow alone, separate pairs",
@@ -112,7 +112,7 @@ pub(super) fn measure(
     }
     let ratio =
         |of: &[f64], to: &[f64]| Times::new(of.iter().zip(to).map(|(of, to)| of / to).collect()).median;
-    let figures = |(times_of, (name, _)): (&Vec<f64>, &(&'static str, Frame<'_>))| Contender {
+    let figures = |(times_of, (name, _)): (&Vec<f64>, &(&'static str, FrameFn<'_>))| Contender {
         name,
         ms: Times::new(times_of.clone()),
         of_stream: ratio(times_of, &times[0]),

@@ -1,11 +1,11 @@
 //! The measurements as text.
 
-use super::measure::Figures;
+use super::measure::BenchFigures;
 use crate::cli::print::table;
 
 /// What was measured for one backend and size.
-pub(super) fn text(figures: &Figures) -> String {
-    let Figures { startup, frame_ms, .. } = figures;
+pub(super) fn text(figures: &BenchFigures) -> String {
+    let BenchFigures { startup, frame_ms, .. } = figures;
     let mut text = format!(
         "{}×{} on {}, {} frames\n\
          frame      median {:.2} ms, p99 {:.2} ms, best {:.2} ms; {:.0} a second\n\

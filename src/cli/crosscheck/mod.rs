@@ -10,14 +10,14 @@ use clap::Args;
 use super::backend::options;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
-use crate::camera::{Camera, Lens, View};
+use crate::camera::{Camera, Framing, Lens};
 use crate::error::{Error, Result};
 use crate::eval::Scene;
 use crate::flow::{self, Algorithm, FlowOptions};
 use crate::frame::{Image, Plane, Size};
 use crate::gpu::{Gpu, GpuOptions};
 use crate::plan::Plan;
-use crate::sphere::{Eye, Fields, Sphere, plan};
+use crate::sphere::{Cameras, ExtraOutputs, Sphere, plan};
 
 /// Compare the GPU with the CPU, step by step.
 ///
@@ -107,7 +107,8 @@ fn sphere_plan(algorithm: &Algorithm, image: &Image, mask: Option<&Plane>) -> Re
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
     let (f_u, f_v) = (0.53 * width, 0.53 * width);
     let raw = Camera { size: image.size, f_u, f_v, u_0: 0.504 * width, v_0: 0.492 * height, lens };
-    let eye = Eye { raw: &raw, ideal: &raw.ideal(image.size, View::CropToValid)?, mask, gyro: true };
-    let fields = Fields { tangent: true, ..Fields::default() };
-    Ok(plan(algorithm, mask.is_some(), &Sphere::default(), eye, image.format, fields)?.0)
+    let cameras =
+        Cameras { raw: &raw, ideal: &raw.ideal(image.size, Framing::CropToValid)?, mask, gyro: true };
+    let fields = ExtraOutputs { spherical_flow: true, ..ExtraOutputs::default() };
+    Ok(plan(algorithm, mask.is_some(), &Sphere::default(), cameras, image.format, fields)?.0)
 }

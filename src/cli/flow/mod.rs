@@ -16,7 +16,7 @@ use self::targets::{FormatArg, Pair, Targets};
 use super::backend::BackendArgs;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input};
-use crate::engine::{Config, Engine, Extras};
+use crate::engine::{Config, Engine, FrameInputs};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, Plane, Size};
 use crate::io::read_flow;
@@ -179,10 +179,10 @@ fn compute(
     let mut report = Report::new(engine.adapter(), first.size);
     let certainty = given.mask.as_ref();
     let mut initial_flow = given.init.as_ref();
-    engine.process_with(&first.frame()?, &Extras { certainty, ..Extras::default() })?;
+    engine.process_with(&first.frame()?, &FrameInputs { certainty, ..FrameInputs::default() })?;
     targets.make_folders()?;
     loop {
-        let output = engine.process_with(&second.frame()?, &Extras { certainty, initial_flow })?;
+        let output = engine.process_with(&second.frame()?, &FrameInputs { certainty, initial_flow })?;
         if let Some((flow, output)) = output.and_then(|output| Some((output.flow?, output))) {
             targets.write(report.pairs, &Pair { first: &first, flow, confidence: output.confidence })?;
             report.add(flow);

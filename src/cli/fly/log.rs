@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-use super::measured::Figures;
+use super::measured::MeasuredFigures;
 use super::setup::SetupArgs;
 use crate::cli::print;
 use crate::error::Result;
 use crate::sim::Course;
 use crate::sim::campaign::{Faults, fingerprint};
 use crate::sim::flight::{FRAME_S, Flight, Record, Summary};
-use crate::sphere::Fields;
+use crate::sphere::ExtraOutputs;
 use crate::steer::{Command, Source};
 
 /// What the flight was: all that it takes to repeat it.
@@ -44,7 +44,7 @@ struct Header<'a> {
 
 /// A frame. What is not known is `null`.
 #[derive(Serialize)]
-struct Frame<'a> {
+struct FrameLine<'a> {
     frame: u64,
     time_s: f64,
     position_ned_m: [f64; 3],
@@ -60,7 +60,7 @@ struct Frame<'a> {
     heading_error_rad: Option<f64>,
     contact_s: Option<f64>,
     true_contact_s: Option<f64>,
-    measured: Option<Figures>,
+    measured: Option<MeasuredFigures>,
     source: &'static str,
     command: Angles,
     danger: Option<f64>,
@@ -87,7 +87,7 @@ pub(super) struct End {
     invalid: f64,
     offset_std_m: Option<f64>,
     offset_mean_m: Option<f64>,
-    measured: Option<Figures>,
+    measured: Option<MeasuredFigures>,
 }
 
 /// The line that a log begins with.
@@ -98,7 +98,7 @@ pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[Stri
     // What is read back to be drawn and what is only measured are no part of the flight.
     let mut flown = config.clone();
     flown.pipeline.read_flow = false;
-    (flown.measure, flown.pipeline.fields) = (false, Fields::default());
+    (flown.measure, flown.pipeline.fields) = (false, ExtraOutputs::default());
     print::one_line(&Header {
         viewsphere: env!("CARGO_PKG_VERSION"),
         fingerprint: fingerprint(&(&flown, course)),
@@ -128,7 +128,7 @@ pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[Stri
 
 /// The line of a frame.
 pub(super) fn frame(record: &Record) -> Result<String> {
-    print::one_line(&Frame {
+    print::one_line(&FrameLine {
         frame: record.frame,
         time_s: record.time_s,
         position_ned_m: record.position_ned_m.to_array(),
@@ -144,7 +144,7 @@ pub(super) fn frame(record: &Record) -> Result<String> {
         heading_error_rad: record.heading_error_rad,
         contact_s: record.contact_s,
         true_contact_s: record.true_contact_s,
-        measured: record.measured.map(Figures::from),
+        measured: record.measured.map(MeasuredFigures::from),
         source: match record.source {
             Source::Cue => "cue",
             Source::Held => "held",
@@ -177,7 +177,7 @@ impl From<&Summary> for End {
             invalid: summary.invalid,
             offset_std_m,
             offset_mean_m,
-            measured: summary.measured.map(Figures::from),
+            measured: summary.measured.map(MeasuredFigures::from),
         }
     }
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::io::picture;
 use crate::report::{FULL_DIVERGENCE_HZ, divergence_strip};
-use crate::sim::flight::{Divergences, Flight, Measured, Seen};
+use crate::sim::flight::{Divergences, Flight, FlightFrame, Measured};
 
 /// The picture's name in the flight's folder.
 pub(super) const PICTURE: &str = "divergence.png";
@@ -37,7 +37,7 @@ pub(super) struct Picture {
 
 /// What is written of it: null where nothing is known.
 #[derive(Debug, Serialize)]
-pub(super) struct Figures {
+pub(super) struct MeasuredFigures {
     better_half_error_px: Option<f64>,
     trusted_error_px: Option<f64>,
     trusted: f64,
@@ -62,7 +62,7 @@ impl MeasureArgs {
 }
 
 impl Picture {
-    pub(super) fn add(&mut self, seen: &Seen<'_>) {
+    pub(super) fn add(&mut self, seen: &FlightFrame<'_>) {
         let Some(divergences) = seen.divergences.filter(|_| !self.done) else { return };
         let record = seen.record;
         self.done = match self.at_s {
@@ -106,7 +106,7 @@ pub(super) fn text(measured: Option<&Measured>, picture: Option<String>) -> Opti
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
-impl From<Measured> for Figures {
+impl From<Measured> for MeasuredFigures {
     fn from(measured: Measured) -> Self {
         Self {
             better_half_error_px: measured.better_half_error_px,

@@ -30,7 +30,7 @@ use crate::report::flight::{FlightReport, FlightVideo};
 use crate::sim::campaign::Faults;
 use crate::sim::course::file;
 use crate::sim::flight::{
-    self, FRAME_S, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, Record, Seen, Sensor, Summary,
+    self, FRAME_S, Fault, Flight, FlightConfig, FlightFrame, MAX_LATENCY_FRAMES, Record, Sensor, Summary,
 };
 use crate::sim::{Course, CourseKind};
 use crate::steer::{Danger, Policy, SteerConfig};
@@ -332,7 +332,7 @@ impl Recorder {
         }
     }
 
-    fn add(&mut self, seen: &Seen<'_>) {
+    fn add(&mut self, seen: &FlightFrame<'_>) {
         self.records.push(seen.record.clone());
         if let Some(picture) = &mut self.picture {
             picture.add(seen);
@@ -376,8 +376,8 @@ fn shown(value: f64) -> f64 {
 fn computed_on(names: Option<&[String; 2]>) -> String {
     match names {
         None => Backend::Cpu.name(),
-        Some([sight, flow]) if sight == flow => flow.clone(),
-        Some([sight, flow]) => format!("{flow}, pictures on {sight}"),
+        Some([renderer, flow]) if renderer == flow => flow.clone(),
+        Some([renderer, flow]) => format!("{flow}, pictures on {renderer}"),
     }
 }
 

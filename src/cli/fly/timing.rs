@@ -24,7 +24,7 @@ pub(super) struct Timing {
     /// Frames that took longer than a camera of 30 Hz gives them.
     over_33_ms: usize,
     total_ms: Spread,
-    sight_ms: Spread,
+    sensor_ms: Spread,
     pipeline_ms: Spread,
     steer_ms: Spread,
     vehicle_ms: Spread,
@@ -60,7 +60,7 @@ impl Costs {
             frames: self.frames.len(),
             over_33_ms: self.frames.iter().filter(|cost| milliseconds(cost.total()) > REAL_TIME_MS).count(),
             total_ms: part(Cost::total),
-            sight_ms: part(|cost| cost.sight),
+            sensor_ms: part(|cost| cost.sensor),
             pipeline_ms: part(|cost| cost.pipeline),
             steer_ms: part(|cost| cost.steer),
             vehicle_ms: part(|cost| cost.vehicle),
@@ -103,11 +103,11 @@ mod tests {
     fn parts_and_late_frames_are_counted() {
         let mut costs = Costs::default();
         for ms in 0..100 {
-            costs.add(Cost { sight: Duration::from_millis(ms), ..Cost::default() });
+            costs.add(Cost { sensor: Duration::from_millis(ms), ..Cost::default() });
         }
         let timing = costs.timing(None);
         assert_eq!((timing.frames, timing.over_33_ms), (100, 66));
-        assert_eq!((timing.sight_ms.median, timing.total_ms.p99), (50.0, 99.0));
+        assert_eq!((timing.sensor_ms.median, timing.total_ms.p99), (50.0, 99.0));
         assert_eq!(timing.pipeline_ms.p99, 0.0);
         assert!(timing.latency_ms.is_none());
     }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::frame::PixelFormat;
 use crate::io::Y4mWriter;
 use crate::report::flight::FlightVideo;
-use crate::sim::flight::Seen;
+use crate::sim::flight::FlightFrame;
 
 /// Every third frame of a flight is drawn: all of them would take three times the space and the time.
 const EVERY: u64 = 3;
@@ -27,7 +27,7 @@ impl<'a> Video<'a> {
         Ok(Self { drawing, writer })
     }
 
-    pub(super) fn add(&mut self, seen: &Seen<'_>) -> Result<()> {
+    pub(super) fn add(&mut self, seen: &FlightFrame<'_>) -> Result<()> {
         if seen.record.frame.is_multiple_of(EVERY) {
             self.writer.write_frame(&self.drawing.draw(seen)?.frame()?)?;
         }

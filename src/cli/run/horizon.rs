@@ -70,14 +70,14 @@ mod tests {
             interval_s,
             invalid: None,
             prev_from_cur,
-            remaining_turn_rad_s: None,
+            residual_rotation_rad_s: None,
             heading: Heading::UNKNOWN,
             sectors: &sectors,
             threat: None,
             flow: None,
             looming: None,
             cells: None,
-            tangent: None,
+            spherical_flow: None,
             latency: Duration::ZERO,
         };
         let mut horizon = Horizon::new(Some("0,0".parse().unwrap())).unwrap();

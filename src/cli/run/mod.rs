@@ -13,7 +13,7 @@ use clap::{ArgGroup, Args};
 
 use self::gyro::{GyroArgs, Numbers};
 use self::horizon::Horizon;
-use self::summary::Summary;
+use self::summary::RunSummary;
 use self::video::Video;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
@@ -187,21 +187,21 @@ impl Run {
             true => Intake::latest(frames, &first, Pace::Times),
             false => Intake::each(frames),
         };
-        let mut flight = Flight { summary: Summary::new(pipeline.adapter()), pipeline, feed, intake };
+        let mut session = Session { summary: RunSummary::new(pipeline.adapter()), pipeline, feed, intake };
         let mut end = Ok(());
         let written = match target {
             None => {
-                end = self.frames(&mut flight, first, None);
+                end = self.frames(&mut session, first, None);
                 Ok(())
             }
             Some(place) => video::write(&place, |out| {
                 let mut video = Video::new(out, &place, [&camera, &ideal], rate, horizon)?;
                 // What was processed is shown, also where the source fails after it.
-                end = self.frames(&mut flight, first, Some(&mut video));
+                end = self.frames(&mut session, first, Some(&mut video));
                 video.finish()
             }),
         };
-        let Flight { summary, pipeline, intake, .. } = &mut flight;
+        let Session { summary, pipeline, intake, .. } = &mut session;
         summary.finish(pipeline.latency(), intake.dropped());
         summary.print(self.json)?;
         end.and(written).map(|()| Outcome::Done)
@@ -210,26 +210,26 @@ impl Run {
     /// Frames until the source ends or fails.
     fn frames(
         &self,
-        flight: &mut Flight,
+        session: &mut Session,
         mut taken: TimedFrame,
         mut video: Option<&mut Video<'_>>,
     ) -> Result<()> {
         loop {
-            let dropped = flight.intake.dropped();
-            for sample in flight.feed.until(taken.time_s) {
-                flight.pipeline.push_gyro(*sample);
+            let dropped = session.intake.dropped();
+            for sample in session.feed.until(taken.time_s) {
+                session.pipeline.push_gyro(*sample);
             }
-            let cue = flight.pipeline.process(&taken.image.frame()?, taken.time_s)?;
+            let cue = session.pipeline.process(&taken.image.frame()?, taken.time_s)?;
             let milliseconds = |time: Duration| 1e3 * time.as_secs_f64();
             let timing = Timing {
                 age_ms: milliseconds(taken.arrived.elapsed()),
                 latency_ms: milliseconds(cue.latency),
                 dropped,
             };
-            flight.summary.add(cue.invalid, cue.threat.is_some_and(|threat| threat.alarm));
+            session.summary.add(cue.invalid, cue.threat.is_some_and(|threat| threat.alarm));
             let read = self.say(taken.number, &cue, timing)?;
             let seen = video.as_mut().is_none_or(|video| video.add(&taken, &cue));
-            if !(read && seen && flight.intake.next_frame(&mut taken)?) {
+            if !(read && seen && session.intake.next_frame(&mut taken)?) {
                 return Ok(());
             }
         }
@@ -270,9 +270,9 @@ impl Run {
 }
 
 /// What a run goes on with.
-struct Flight {
+struct Session {
     pipeline: Pipeline,
     feed: GyroFeed,
     intake: Intake<Source>,
-    summary: Summary,
+    summary: RunSummary,
 }

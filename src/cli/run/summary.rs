@@ -12,7 +12,7 @@ use crate::text::counted;
 
 /// Figures over all frames.
 #[derive(Debug, Serialize)]
-pub(super) struct Summary {
+pub(super) struct RunSummary {
     backend: String,
     /// Those that were processed; the dropped ones are not among them.
     frames: u64,
@@ -47,7 +47,7 @@ impl ByKind {
     }
 }
 
-impl Summary {
+impl RunSummary {
     pub(super) fn new(backend: String) -> Self {
         Self {
             backend,

@@ -12,7 +12,7 @@ use super::backend::BackendArgs;
 use super::flow::source::Source;
 use super::flow::targets::{Place, check_places, place};
 use super::{Outcome, input, print};
-use crate::camera::{Camera, Lens, View};
+use crate::camera::{Camera, Framing, Lens};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW};
 use crate::io::{self, picture};
@@ -138,8 +138,8 @@ impl Undistort {
     fn ideal(&self, raw: &Camera) -> Result<Camera> {
         let size = self.size.unwrap_or(raw.size);
         match (self.keep_all, self.crop) {
-            (true, _) => raw.ideal(size, View::KeepAll),
-            (_, true) => raw.ideal(size, View::CropToValid),
+            (true, _) => raw.ideal(size, Framing::KeepAll),
+            (_, true) => raw.ideal(size, Framing::CropToValid),
             _ => Ok(Camera { lens: Lens::NONE, ..raw.resized(size) }),
         }
     }

@@ -4,7 +4,7 @@ use crate::backend::Backend;
 use crate::camera::Camera;
 use crate::error::Result;
 use crate::frame::{Image, PixelFormat, Plane, Size};
-use crate::kernels::{lens_map, remap};
+use crate::kernels::{remap, undistort_map};
 use crate::plan::{Bufs, Fill, Plan, Port, PortKind, Shape, Step, Value};
 use crate::runner::Runner;
 use crate::sphere::{MOTION_LEN, Motion};
@@ -70,9 +70,9 @@ fn plan(raw: &Camera, out: &Camera) -> Result<Plan> {
     let certainty = bufs.computed("certainty", to);
     let resampled = bufs.computed("resampled", to);
     let map = Step::new(
-        &lens_map::KERNEL,
+        &undistort_map::KERNEL,
         "once",
-        lens_map::Params::new(out, raw),
+        undistort_map::Params::new(out, raw),
         &[still, mask],
         &[(places, Shape::planar(out.size, 2)), (certainty, to)],
     );

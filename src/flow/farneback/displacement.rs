@@ -5,7 +5,7 @@ use super::{Farneback, Outside, Update, Window};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::{Level, Wanted};
 use crate::kernels::{
-    advance, certain_matrices, confidence, matrices, residual, solve, tables, window_y,
+    solve_increment, weighted_normal_equations, confidence, normal_equations, residual, solve, tables, window_y,
 };
 use crate::plan::{BufId, Bufs, Shape, Step};
 
@@ -23,11 +23,11 @@ pub(super) struct Displacement {
     window_x: BufId,
     equations: BufId,
     columns: BufId,
-    trust: Option<Trust>,
+    evidence: Option<Evidence>,
 }
 
 /// The buffers of the confidence.
-struct Trust {
+struct Evidence {
     /// Where frames come without a certainty, one that is the same everywhere.
     certainty: Option<BufId>,
     confidence: BufId,
@@ -51,7 +51,7 @@ impl Displacement {
             window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
-            trust: wanted.confidence.then(|| Trust {
+            evidence: wanted.confidence.then(|| Evidence {
                 certainty: (!wanted.certainty)
                     .then(|| bufs.constant("equal certainty", vec![1.0; Shape::planar(finest, 1).len()])),
                 confidence: bufs.computed("confidence", Shape::planar(finest, 1)),
@@ -61,7 +61,7 @@ impl Displacement {
 
     /// Where the confidence goes.
     pub(super) fn confidence(&self) -> Option<BufId> {
-        self.trust.as_ref().map(|trust| trust.confidence)
+        self.evidence.as_ref().map(|evidence| evidence.confidence)
     }
 
     /// The flow from the picture in the first of two slots to that in the second. It begins with the given one, if the
@@ -77,8 +77,8 @@ impl Displacement {
         let mut steps = self.coarse_to_fine.steps(self.iterations, given, flow, |steps, iteration| {
             self.iterate(steps, &iteration, pair(iteration.k));
         });
-        if let Some(trust) = &self.trust {
-            self.judge(&mut steps, trust, self.finest, pair(0), flow);
+        if let Some(evidence) = &self.evidence {
+            self.judge(&mut steps, evidence, self.finest, pair(0), flow);
         }
         steps
     }
@@ -93,7 +93,7 @@ impl Displacement {
         let (size, so_far) = (level.size, *so_far);
         let (width, height) = (size.width, size.height);
         let five = Shape::planar(size, 5);
-        let equations = matrices::Params {
+        let equations = normal_equations::Params {
             width,
             height,
             carried: if self.adds { 0.0 } else { 1.0 },
@@ -101,7 +101,7 @@ impl Displacement {
         };
         steps.push(match (first.certainty, second.certainty) {
             (Some(certainty_0), Some(certainty_1)) => Step::new(
-                &certain_matrices::KERNEL,
+                &weighted_normal_equations::KERNEL,
                 label.clone(),
                 equations,
                 &[
@@ -116,7 +116,7 @@ impl Displacement {
                 &[(self.equations, five)],
             ),
             _ => Step::new(
-                &matrices::KERNEL,
+                &normal_equations::KERNEL,
                 label.clone(),
                 equations,
                 &[first.quad, first.cross_term, second.quad, second.cross_term, so_far],
@@ -136,7 +136,7 @@ impl Displacement {
         steps.push(match self.adds {
             false => Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow),
             true => {
-                Step::new(&advance::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
+                Step::new(&solve_increment::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
             }
         });
     }
@@ -145,7 +145,7 @@ impl Displacement {
     fn judge(
         &self,
         steps: &mut Vec<Step>,
-        trust: &Trust,
+        evidence: &Evidence,
         level: Level,
         [first, second]: [Expansion; 2],
         flow: BufId,
@@ -153,7 +153,7 @@ impl Displacement {
         let (width, height) = (level.size.width, level.size.height);
         let five = Shape::planar(level.size, 5);
         let certainty =
-            trust.certainty.or(first.certainty).unwrap_or_else(|| unreachable!("there is one of the two"));
+            evidence.certainty.or(first.certainty).unwrap_or_else(|| unreachable!("there is one of the two"));
         steps.push(Step::new(
             &residual::KERNEL,
             "confidence",
@@ -173,7 +173,7 @@ impl Displacement {
             "confidence",
             confidence::Params { width, height, radius: self.radius },
             &[self.columns, self.window_x],
-            &[(trust.confidence, Shape::planar(level.size, 1))],
+            &[(evidence.confidence, Shape::planar(level.size, 1))],
         ));
     }
 }

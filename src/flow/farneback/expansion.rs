@@ -1,7 +1,7 @@
 //! What is computed of one frame alone: its pyramid, and each level's polynomial expansion.
 
 use super::Farneback;
-use super::certain::Certain;
+use super::normalized::Normalized;
 use crate::flow::Level;
 use crate::flow::pyramid::Pyramid;
 use crate::frame::Size;
@@ -25,7 +25,7 @@ pub(super) struct Expansions {
     /// Of each level, finest first, for both slots.
     pub(super) levels: Vec<[Expansion; 2]>,
     /// What a certainty adds.
-    pub(super) certain: Option<Certain>,
+    pub(super) normalized: Option<Normalized>,
     size: Size,
     radius: u32,
     applicability: Applicability,
@@ -41,14 +41,14 @@ pub(super) struct Expansions {
 impl Expansions {
     pub(super) fn new(bufs: &mut Bufs, config: &Farneback, size: Size, levels: &[Level], certainty: bool) -> Self {
         let applicability = tables::applicability(config.poly_n, config.poly_sigma);
-        let certain = certainty.then(|| Certain::new(bufs, size, levels));
+        let normalized = certainty.then(|| Normalized::new(bufs, size, levels));
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
             let frames = ["even frames", "odd frames"][slot];
             Expansion {
                 quad: bufs.computed(format!("quad, level {k}, {frames}"), Shape::quads(level.size)),
                 cross_term: bufs
                     .computed(format!("cross term, level {k}, {frames}"), Shape::planar(level.size, 1)),
-                certainty: certain.as_ref().map(|certain| certain.expansion(k, slot)),
+                certainty: normalized.as_ref().map(|normalized| normalized.expansion(k, slot)),
             }
         };
         Self {
@@ -72,8 +72,8 @@ impl Expansions {
             ),
             applicability,
             image: bufs.computed("level's image", Shape::planar(size, 1)),
-            moments: certain.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
-            certain,
+            moments: normalized.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
+            normalized,
             pyramid: Pyramid::new(bufs, size, levels),
             sizes: levels.iter().map(|level| level.size).collect(),
         }
@@ -82,10 +82,10 @@ impl Expansions {
     /// The expansion of a gray picture into this slot. Its certainty is needed if the estimator takes one.
     pub(super) fn steps(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
         let mut steps = Vec::new();
-        let pictures = match (&self.certain, certainty) {
-            (Some(certain), Some(certainty)) => {
-                steps.push(certain.weigh(gray, certainty, self.size));
-                certain.pictures(self.image)
+        let pictures = match (&self.normalized, certainty) {
+            (Some(normalized), Some(certainty)) => {
+                steps.push(normalized.premultiply(gray, certainty, self.size));
+                normalized.pictures(self.image)
             }
             _ => vec![[gray, self.image]],
         };
@@ -101,9 +101,9 @@ impl Expansions {
     /// The polynomial expansion of a level's image.
     fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize) {
         let Expansion { quad, cross_term, certainty } = self.levels[k][slot];
-        if let (Some(certain), Some(certainty)) = (&self.certain, certainty) {
+        if let (Some(normalized), Some(certainty)) = (&self.normalized, certainty) {
             let inputs = [self.image, self.weights_y, self.weights_x];
-            steps.extend(certain.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));
+            steps.extend(normalized.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));
         }
         let Some(moments) = self.moments else { return };
         steps.push(Step::new(

@@ -1,6 +1,6 @@
 //! Pyramidal Farnebäck flow, with OpenCV's semantics to the last border pixel.
 
-mod certain;
+mod normalized;
 mod displacement;
 mod expansion;
 mod parameters;

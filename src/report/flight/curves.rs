@@ -18,7 +18,7 @@ type Part = (&'static str, &'static str, fn(&Cost) -> f64);
 
 /// What a frame's parts cost in milliseconds, with their names and classes.
 pub(super) const PARTS: [Part; 4] = [
-    ("drawing or true flow", "c0", |cost| 1e3 * cost.sight.as_secs_f64()),
+    ("drawing or true flow", "c0", |cost| 1e3 * cost.sensor.as_secs_f64()),
     ("picture to sectors", "c1", |cost| 1e3 * cost.pipeline.as_secs_f64()),
     ("steering", "c2", |cost| 1e3 * cost.steer.as_secs_f64()),
     ("vehicle", "c3", |cost| 1e3 * cost.vehicle.as_secs_f64()),

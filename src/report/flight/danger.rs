@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::report::canvas::Canvas;
 use crate::report::colours::{ARC, BACKGROUND, DIM, TEXT, time_colour};
-use crate::sim::flight::Seen;
+use crate::sim::flight::FlightFrame;
 use crate::sphere::angles_rad;
 use crate::steer::Arc;
 
@@ -14,7 +14,7 @@ const UNKNOWN: [u8; 3] = [14, 16, 20];
 const LEAST_HZ: f64 = 0.1;
 
 /// Draws the map of danger of the steering: left is left, up is up, the middle is the direction of motion.
-pub(super) fn draw(canvas: &mut Canvas<'_>, seen: &Seen<'_>) {
+pub(super) fn draw(canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
     let map = seen.steering.map();
     let grid = &map.grid;
     canvas.fill(BACKGROUND);

@@ -6,7 +6,7 @@ use crate::report::canvas::Canvas;
 use crate::report::colours::{self, ARC, BACKGROUND, DIM, TEXT, time_colour};
 use crate::report::footprint::Footprint;
 use crate::sim::Course;
-use crate::sim::flight::{Record, Seen};
+use crate::sim::flight::{FlightFrame, Record};
 
 /// What is shown from the lower border to the upper one, metres.
 const SPAN_M: f64 = 90.0;
@@ -46,7 +46,7 @@ impl Map {
     }
 
     /// Draws what is around; the direction of the goal is up.
-    pub(super) fn draw(&mut self, canvas: &mut Canvas<'_>, seen: &Seen<'_>) {
+    pub(super) fn draw(&mut self, canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
         let record = seen.record;
         let here = record.position_ned_m.truncate();
         self.path_m.push(here);

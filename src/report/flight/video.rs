@@ -10,9 +10,9 @@ use crate::frame::{Image, PixelFormat, Size};
 use crate::report::Overlay;
 use crate::report::canvas::Canvas;
 use crate::report::colours::{ARC, DIM, FRAME, TEXT, WRONG};
-use crate::report::straight::Straight;
-use crate::sim::flight::{Flight, Record, Seen};
-use crate::sim::{RayTable, World, render};
+use crate::report::rectified::Rectified;
+use crate::sim::flight::{Flight, FlightFrame, Record};
+use crate::sim::{RayTable, World, reference_render};
 use crate::steer::Source;
 
 /// About how wide the camera's picture is drawn, and the map beside it.
@@ -38,7 +38,7 @@ const BELOW_M: f64 = 1.0;
 pub struct FlightVideo {
     ideal: Camera,
     overlay: Overlay,
-    straight: Straight,
+    rectified: Rectified,
     scenery: Scenery,
     /// The picture in the ideal camera's size, where there is no cue to draw over it.
     plain: Image,
@@ -69,7 +69,7 @@ impl FlightVideo {
         let blank = |size: Size| Image { size, format: PixelFormat::Rgb8, data: vec![0; 3 * size.pixels()] };
         Ok(Self {
             overlay: Overlay::new(raw, &ideal)?,
-            straight: Straight::new(raw, &ideal),
+            rectified: Rectified::new(raw, &ideal),
             scenery: Scenery { world: flight.course().world.clone(), rays: None },
             plain: blank(ideal.size),
             map: Map::new(flight.course()),
@@ -88,14 +88,14 @@ impl FlightVideo {
     ///
     /// # Errors
     /// [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a picture or a flow of another camera.
-    pub fn draw(&mut self, seen: &Seen<'_>) -> Result<&Image> {
+    pub fn draw(&mut self, seen: &FlightFrame<'_>) -> Result<&Image> {
         Canvas::new(&mut self.image, [0, 0], [usize::MAX; 2]).fill(FRAME);
         let [width, height] =
             [self.ideal.size.width, self.ideal.size.height].map(|s| s as usize * self.scale);
         let picture = match (seen.image, seen.cue) {
             (Some(image), Some(cue)) => self.overlay.draw(&image.frame()?, cue)?,
             (Some(image), None) => {
-                self.straight.draw(&image.frame()?, &mut self.plain)?;
+                self.rectified.draw(&image.frame()?, &mut self.plain)?;
                 &self.plain
             }
             (None, _) => {
@@ -126,7 +126,7 @@ impl Scenery {
         };
         let pose =
             Pose { position_world: record.position_ned_m, world_from_camera: world_from_camera(record) };
-        let gray = render(&self.world, rays, &pose).image;
+        let gray = reference_render(&self.world, rays, &pose).image;
         for (pixel, gray) in image.data.as_chunks_mut::<3>().0.iter_mut().zip(gray.data) {
             *pixel = [gray; 3];
         }
@@ -152,7 +152,7 @@ fn enlarge(from: &Image, to: &mut Image, scale: usize) {
 }
 
 /// The horizon, and the arc that was chosen as a ribbon below the vehicle.
-fn attitude(canvas: &mut Canvas<'_>, ideal: &Camera, scale: f64, seen: &Seen<'_>) {
+fn attitude(canvas: &mut Canvas<'_>, ideal: &Camera, scale: f64, seen: &FlightFrame<'_>) {
     let camera_from_world = world_from_camera(seen.record).transpose();
     let place = |off_ned: DVec3| {
         let place = ideal.project(camera_from_world * off_ned)?;

@@ -26,13 +26,13 @@ struct Line {
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    flown: Option<Figures>,
+    flown: Option<FlownFigures>,
 }
 
 /// A [`Summary`].
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Figures {
+struct FlownFigures {
     outcome: String,
     #[serde(deserialize_with = "number")]
     time_s: f64,
@@ -71,7 +71,7 @@ impl JobResult {
         let setting = &self.job.setting;
         let Setting { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = setting;
         let (flown, error) = match &self.ended {
-            Ended::Flown(summary) => (Some(Figures::from(summary)), None),
+            Ended::Flown(summary) => (Some(FlownFigures::from(summary)), None),
             Ended::Failed(reason) => (None, Some(reason.clone())),
         };
         Line {
@@ -137,7 +137,7 @@ impl Line {
     }
 }
 
-impl From<&Summary> for Figures {
+impl From<&Summary> for FlownFigures {
     fn from(summary: &Summary) -> Self {
         Self {
             outcome: summary.outcome.to_string(),
@@ -153,7 +153,7 @@ impl From<&Summary> for Figures {
     }
 }
 
-impl Figures {
+impl FlownFigures {
     fn summary(&self) -> Result<Summary> {
         Ok(Summary {
             outcome: self.outcome.parse()?,

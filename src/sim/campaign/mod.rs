@@ -12,11 +12,11 @@ mod job;
 mod journal;
 #[cfg(all(feature = "io", feature = "serde"))]
 mod line;
-mod plan;
 mod result;
 #[cfg(all(feature = "io", feature = "serde"))]
 mod results;
 mod run;
+mod schedule;
 mod statistics;
 mod table;
 #[cfg(test)]
@@ -27,10 +27,10 @@ pub use fingerprint::fingerprint;
 pub use job::{Job, Setting};
 #[cfg(all(feature = "io", feature = "serde"))]
 pub use journal::{Journal, Opened};
-pub use plan::{Campaign, Shard};
 pub use result::{Ended, JobResult};
 #[cfg(all(feature = "io", feature = "serde"))]
 pub use results::{Configuration, Results};
 pub use run::{Open, fly_all};
+pub use schedule::{Campaign, Shard};
 pub use statistics::wilson;
 pub use table::{Row, Table};

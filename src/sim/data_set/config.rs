@@ -1,7 +1,7 @@
 use super::Truth;
 use crate::error::{Error, Result};
 use crate::frame::{Image, Plane, Size};
-use crate::sim::SightConfig;
+use crate::sim::RendererConfig;
 use crate::sim::vehicle::GyroErrors;
 
 /// Steps of the vehicle, and samples of its gyro, per second.
@@ -69,7 +69,7 @@ impl DataSetConfig {
                 format_args!("a divisor of {STEPS_PER_S}"),
             ));
         }
-        SightConfig { noise_levels: self.noise_levels, ..SightConfig::default() }.validate()?;
+        RendererConfig { noise_levels: self.noise_levels, ..RendererConfig::default() }.validate()?;
         self.gyro_errors.validate()?;
         if self.paint.is_some() && self.scales().is_none() {
             return Err(Error::parameter("paint", "given", "divergence or nearness in truths"));

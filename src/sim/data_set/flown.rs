@@ -86,8 +86,8 @@ pub(super) fn ended(outcome: Outcome) -> &'static str {
 }
 
 /// How the camera moves, in its own frame.
-pub(super) fn motion(state: &VehicleState) -> crate::sim::Motion {
-    crate::sim::Motion {
+pub(super) fn motion(state: &VehicleState) -> crate::sim::Twist {
+    crate::sim::Twist {
         velocity_m_s: state.camera_pose().world_from_camera.transpose() * state.velocity_ned_m_s,
         rate_rad_s: FRD_FROM_CAMERA.transpose() * state.rate_body_rad_s,
     }

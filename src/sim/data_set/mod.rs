@@ -38,7 +38,7 @@ use self::folder::Folder;
 use self::truth::Writer;
 use super::flight::Outcome;
 use super::vehicle::GyroErrors;
-use super::{Course, Random, Sight, SightConfig};
+use super::{Course, Random, Renderer, RendererConfig};
 use crate::backend::Backend;
 use crate::camera::Camera;
 use crate::error::Result;
@@ -119,18 +119,18 @@ impl<'a> DataSetWriter<'a> {
     /// written after each one.
     ///
     /// # Errors
-    /// What [`Sight::new`] and [`Sight::look`] fail with; [`Error::Io`](crate::Error::Io).
+    /// What [`Renderer::new`] and [`Renderer::render`] fail with; [`Error::Io`](crate::Error::Io).
     pub fn write(self, backend: Backend, mut progress: impl FnMut(usize)) -> Result<DataSetSummary> {
         let Self { course, camera, config, truths, mut folder, flown } = self;
-        let sight_config = SightConfig { noise_levels: config.noise_levels, ..SightConfig::default() };
-        let mut sight = Sight::new(backend, camera, &course.world, &sight_config)?;
+        let sight_config = RendererConfig { noise_levels: config.noise_levels, ..RendererConfig::default() };
+        let mut renderer = Renderer::new(backend, camera, &course.world, &sight_config)?;
         camera::write(folder.path("camera.yaml"), camera, camera::Format::OpenCv)?;
         folder.make("frames")?;
         config.truths.iter().try_for_each(|truth| folder.make(truth.name()))?;
         let mut random = Random::new(config.seed);
         let seed = random.fork(1).next_u64();
         for (number, state) in flown.frames.iter().enumerate() {
-            let image = sight.look(&state.camera_pose(), seed.wrapping_add(number as u64))?;
+            let image = renderer.render(&state.camera_pose(), seed.wrapping_add(number as u64))?;
             picture::write_png(folder.path(&format!("frames/{number:06}.png")), image)?;
             truths.write(&folder, number, state, flown.frames.get(number + 1))?;
             progress(number + 1);

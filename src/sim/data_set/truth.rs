@@ -3,12 +3,12 @@
 use super::Paint;
 use super::flown::motion;
 use super::folder::Folder;
-use crate::camera::{Camera, Lens, View};
+use crate::camera::{Camera, Framing, Lens};
 use crate::error::Result;
 use crate::frame::{Plane, Size};
 use crate::io::{flo, npy, picture, write_bytes};
 use crate::sim::vehicle::VehicleState;
-use crate::sim::{RayTable, Seen, World, displacement, ray_grid, sightings};
+use crate::sim::{RayTable, Seen, World, displacement, query_rays, ray_grid};
 use crate::sphere::Grid;
 
 /// The divergence of a wall ahead that is met in a second, 1/s.
@@ -104,7 +104,7 @@ impl<'a> Writer<'a> {
         let (pose, motion) = (state.camera_pose(), motion(state));
         let per_pixel = |truth: &Truth| !matches!(truth, Truth::Flow | Truth::Grid);
         let seen = match self.truths.iter().any(per_pixel) {
-            true => sightings(self.world, &self.rays, &pose),
+            true => query_rays(self.world, &self.rays, &pose),
             false => Vec::new(),
         };
         let size = self.camera.size;
@@ -149,7 +149,7 @@ impl<'a> Writer<'a> {
 pub(super) fn grid_over(camera: &Camera, Size { width, height }: Size) -> Result<Grid> {
     let ideal = match camera.lens {
         Lens::NONE => *camera,
-        _ => camera.ideal(camera.size, View::KeepAll)?,
+        _ => camera.ideal(camera.size, Framing::KeepAll)?,
     };
     Ok(Grid { columns: width as usize, rows: height as usize, ..Grid::over(&ideal, [1, 1])? })
 }

@@ -9,7 +9,7 @@ use crate::pipeline::PipelineConfig;
 use crate::sim::vehicle::{
     AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors, Wind,
 };
-use crate::sim::{Course, SightConfig};
+use crate::sim::{Course, RendererConfig};
 use crate::sphere::{Derotation, HeadingModel, Sphere};
 use crate::steer::SteerConfig;
 
@@ -87,7 +87,7 @@ pub struct FlightConfig {
     /// The camera, at the body's origin, its axis along the body's x axis.
     pub camera: Camera,
     /// How its pictures come about.
-    pub sight: SightConfig,
+    pub renderer: RendererConfig,
     /// How they are looked at. The gyro is set by the flight.
     pub pipeline: PipelineConfig,
     /// What is done about it. The camera's mounting and the latency are set by the flight, and how the aircraft follows
@@ -123,7 +123,7 @@ impl Default for FlightConfig {
             radius_m: 0.6,
             sensor: Sensor::default(),
             camera: camera(Size::new(320, 240)),
-            sight: SightConfig::default(),
+            renderer: RendererConfig::default(),
             pipeline: PipelineConfig {
                 // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; of increments a
                 // wide Gaussian a few per cent. One iteration finds what is left of a primed search.

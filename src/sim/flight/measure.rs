@@ -2,13 +2,13 @@
 
 use glam::DMat3;
 
-use super::eye::Moment;
-use super::true_eye::true_flow;
+use super::sensor_model::SensorInput;
+use super::true_sensor::true_flow;
 use crate::camera::{Camera, Pose};
 use crate::error::Result;
 use crate::frame::{Plane, Size};
 use crate::pipeline::Cue;
-use crate::sim::{Motion, RayTable, Seen, sightings};
+use crate::sim::{RayTable, Seen, Twist, query_rays};
 use crate::sphere::{Sphere, model};
 
 /// True times to contact at which the measured ones are judged, seconds: steering acts on these.
@@ -27,7 +27,7 @@ pub struct Measured {
     pub better_half_error_px: Option<f64>,
     /// The same in all trusted cells.
     pub trusted_error_px: Option<f64>,
-    /// The share of cells that are trusted, by [`Sphere::least_trust`] or more: 0 to 1.
+    /// The share of cells that are trusted, by [`Sphere::least_confidence`] or more: 0 to 1.
     pub trusted: f64,
     /// Median relative error of the time to contact, in trusted cells whose true one is between 0.7 and 4 s; a cell that
     /// shows nothing coming nearer is infinitely wrong. None where there are no such cells.
@@ -72,7 +72,7 @@ pub(super) struct Measure {
     apart: usize,
     cell: usize,
     step: usize,
-    least_trust: f64,
+    least_confidence: f64,
     focal_px: f64,
     divergences: Divergences,
     /// From where the picture that is shown was taken; none if it was not taken at all.
@@ -109,7 +109,7 @@ impl Measure {
             apart: apart as usize,
             cell: view.cell as usize,
             step: view.step as usize,
-            least_trust: view.least_trust,
+            least_confidence: view.least_confidence,
             focal_px: ideal.f_u,
             divergences: Divergences { measured_hz: unknown.clone(), true_hz: unknown },
             shown: None,
@@ -128,7 +128,7 @@ impl Measure {
     }
 
     /// Compares what the pipeline says of the picture that it was shown. None if it says nothing.
-    pub(super) fn compare(&mut self, cue: &Cue<'_>, at: &Moment<'_>) -> Option<Measured> {
+    pub(super) fn compare(&mut self, cue: &Cue<'_>, at: &SensorInput<'_>) -> Option<Measured> {
         let before = std::mem::replace(&mut self.before, self.shown)?;
         let (Some(looming), Some(cells), Some(interval_s), None) =
             (cue.looming, cue.cells, cue.interval_s, cue.invalid)
@@ -138,8 +138,8 @@ impl Measure {
         let pose = self.shown?;
         let prev_from_cur = before.world_from_camera.transpose() * pose.world_from_camera;
         let velocity_m_s = pose.world_from_camera.transpose() * at.velocity_world_m_s;
-        let motion = Motion { velocity_m_s, rate_rad_s: glam::DVec3::ZERO };
-        let seen = sightings(at.world, &self.rays, &pose);
+        let motion = Twist { velocity_m_s, rate_rad_s: glam::DVec3::ZERO };
+        let seen = query_rays(at.world, &self.rays, &pose);
         let size = self.divergences.true_hz.size;
         let (columns, stride) = (size.width as usize, size.stride());
         let (mut trusted, mut contacts) = (Vec::new(), Vec::new());
@@ -150,17 +150,17 @@ impl Measure {
             };
             let truth = self.truth(cell, &seen, [&before, &pose], &prev_from_cur, &motion);
             // As the sectors take them.
-            let is_known = value(looming, 4, 3) >= 0.5 * self.least_trust;
+            let is_known = value(looming, 4, 3) >= 0.5 * self.least_confidence;
             let divergence_hz = if is_known { value(looming, 4, 1) / interval_s } else { f64::NAN };
             self.divergences.measured_hz.data[i] = divergence_hz as f32;
             self.divergences.true_hz.data[i] = truth.divergence_hz as f32;
-            let trust = value(cells, 5, 0);
-            if !(trust >= self.least_trust) {
+            let confidence = value(cells, 5, 0);
+            if !(confidence >= self.least_confidence) {
                 continue;
             }
             let place = [1, 2].map(|channel| value(cells, 5, channel));
             let off = [0, 1].map(|axis| value(cells, 5, 3 + axis) - truth.flow[axis]);
-            trusted.push((trust, self.focal_px * model::from_plane(place, off).length()));
+            trusted.push((confidence, self.focal_px * model::from_plane(place, off).length()));
             let true_s = (truth.nearness_per_m * velocity_m_s.length()).recip();
             if is_known && (JUDGED_S[0]..=JUDGED_S[1]).contains(&true_s) {
                 let rate_hz = value(looming, 4, 0) / interval_s;
@@ -188,7 +188,7 @@ impl Measure {
         seen: &[Option<Seen>],
         poses: [&Pose; 2],
         prev_from_cur: &DMat3,
-        motion: &Motion,
+        motion: &Twist,
     ) -> Truth {
         let Size { width, height } = self.rays.size();
         let along = |axis: usize, side: u32| {
@@ -268,11 +268,11 @@ mod tests {
             focal: [44.0, 46.0],
             centre: [47.0, 36.0],
         };
-        let trust = vec![1.0; 24 * 18];
+        let confidence = vec![1.0; 24 * 18];
         let mut cells = vec![0.0; 5 * 24 * 18];
         (KERNEL.reference)(
             bytemuck::bytes_of(&params),
-            &[&pixels, &motion, &known, &trust],
+            &[&pixels, &motion, &known, &confidence],
             &mut [&mut cells],
         );
         let mut measure = Measure::new(&ideal, Size::new(columns, rows), &view()).unwrap();
@@ -285,17 +285,17 @@ mod tests {
             interval_s: Some(1.0 / 30.0),
             invalid: None,
             prev_from_cur: Some(turn),
-            remaining_turn_rad_s: None,
+            residual_rotation_rad_s: None,
             heading: Heading::UNKNOWN,
             sectors: &sectors,
             threat: None,
             flow: None,
             looming: Some(&looming),
             cells: Some(&cells),
-            tangent: None,
+            spherical_flow: None,
             latency: Duration::ZERO,
         };
-        let moment = |pose: Pose| Moment {
+        let input = |pose: Pose| SensorInput {
             world: &world,
             pose,
             velocity_world_m_s: DVec3::X * 12.0,
@@ -304,9 +304,9 @@ mod tests {
             time_s: 1.0,
         };
         measure.show(Some(before));
-        assert_eq!(measure.compare(&cue, &moment(before)), None);
+        assert_eq!(measure.compare(&cue, &input(before)), None);
         measure.show(Some(pose));
-        let found = measure.compare(&cue, &moment(pose)).unwrap();
+        let found = measure.compare(&cue, &input(pose)).unwrap();
         // The displacement is an f32 of a few pixels, and the kernel computes in f32.
         assert!(found.trusted > 0.9 && !(found.trusted_error_px.unwrap() > 1e-4), "{found:?}");
         assert_eq!((found.contact_cells, found.contact_error), (0, None));
@@ -315,9 +315,9 @@ mod tests {
         assert!(true_hz.data.iter().all(|value| value.is_finite()));
         // A pose that is wrong by a tenth of the way shows.
         measure.show(Some(earlier));
-        measure.compare(&cue, &moment(before));
+        measure.compare(&cue, &input(before));
         measure.show(Some(pose));
-        let wrong = measure.compare(&cue, &moment(pose)).unwrap();
+        let wrong = measure.compare(&cue, &input(pose)).unwrap();
         assert!(wrong.trusted_error_px.unwrap() > 2e-3, "{wrong:?}");
     }
 

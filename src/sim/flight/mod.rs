@@ -4,14 +4,14 @@
 //! or something else ends it. The same course and configuration give the same records, bit for bit, on the same machine
 //! and adapter.
 
-mod camera_eye;
+mod camera_sensor;
 mod config;
-mod eye;
 mod fault;
 mod measure;
 mod names;
 mod record;
-mod true_eye;
+mod sensor_model;
+mod true_sensor;
 
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -35,8 +35,8 @@ use crate::sim::vehicle::{
 use crate::sim::{Course, Random};
 use crate::sphere::{Heading, Sectors};
 use crate::steer::{Command, Decision, Goal, Observation, SteerConfig, Steering, View};
-use eye::{Eye, Moment, Said, gyro_config};
 use record::Tally;
+use sensor_model::{Perception, SensorInput, SensorModel, gyro_config};
 
 /// Steps of the vehicle from frame to frame.
 const STEPS: u32 = 8;
@@ -50,7 +50,7 @@ pub struct Flight {
     course: Course,
     config: FlightConfig,
     vehicle: Box<dyn Vehicle>,
-    eye: Eye,
+    sensor: SensorModel,
     steering: Steering,
     gyro: GyroModel,
     airspeed: AirspeedModel,
@@ -71,7 +71,7 @@ const VANES_RAD: f64 = 0.035;
 
 /// What can be looked at of a frame while the flight goes on.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
+pub struct FlightFrame<'a> {
     /// The picture, if the sensor is a camera.
     pub image: Option<&'a Image>,
     /// What the pipeline says, if there is one and it says something.
@@ -89,7 +89,7 @@ impl Flight {
     ///
     /// # Errors
     /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range, also for a fault that begins after the flight is
-    /// given up; as [`Sight::new`](crate::sim::Sight::new) and [`Pipeline::new`](crate::Pipeline::new).
+    /// given up; as [`Renderer::new`](crate::sim::Renderer::new) and [`Pipeline::new`](crate::Pipeline::new).
     pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
         config.validate()?;
         let mut config = config.clone();
@@ -126,7 +126,7 @@ impl Flight {
         Ok(Self {
             course: course.clone(),
             vehicle,
-            eye: Eye::new(backends, &course.world, &config, random.fork(2))?,
+            sensor: SensorModel::new(backends, &course.world, &config, random.fork(2))?,
             steering: Steering::new(config.steer.clone())?,
             gyro: GyroModel::new(&config.gyro, random.fork(3).next_u64())?,
             airspeed: AirspeedModel::new(config.airspeed_error, random.fork(4).next_u64())?,
@@ -156,7 +156,7 @@ impl Flight {
 
     /// The pinhole in whose pictures the view is looked at.
     pub fn ideal(&self) -> &Camera {
-        self.eye.ideal()
+        self.sensor.ideal()
     }
 
     /// What the parts of the last frame cost.
@@ -174,7 +174,7 @@ impl Flight {
     ///
     /// # Errors
     /// As [`Flight::step`].
-    pub fn fly(&mut self, mut show: impl FnMut(&Seen<'_>) -> Result<()>) -> Result<Summary> {
+    pub fn fly(&mut self, mut show: impl FnMut(&FlightFrame<'_>) -> Result<()>) -> Result<Summary> {
         loop {
             if let Some(summary) = self.step(&mut show)? {
                 return Ok(summary);
@@ -186,14 +186,14 @@ impl Flight {
     ///
     /// # Errors
     /// What drawing, the pipeline and `show` fail with, apart from faults that a flight goes on with.
-    pub fn step(&mut self, mut show: impl FnMut(&Seen<'_>) -> Result<()>) -> Result<Option<Summary>> {
+    pub fn step(&mut self, mut show: impl FnMut(&FlightFrame<'_>) -> Result<()>) -> Result<Option<Summary>> {
         let state = self.state(0);
         self.states.clear();
         self.states.push(state);
         self.push_gyro(&state);
         let motion_body = self.vanes.as_mut().map(|vanes| vanes.direction_body(&state));
-        let Self { course, config, eye, steering, .. } = self;
-        let moment = Moment {
+        let Self { course, config, sensor, steering, .. } = self;
+        let input = SensorInput {
             world: &course.world,
             pose: state.camera_pose(),
             velocity_world_m_s: state.velocity_ned_m_s,
@@ -205,7 +205,7 @@ impl Flight {
             time_s: state.time_s,
         };
         let mut cost = Cost::default();
-        let said = eye.look(&moment, config, &mut cost)?;
+        let perception = sensor.sense(&input, config, &mut cost)?;
         let begun = Instant::now();
         let observation = Observation {
             time_s: state.time_s,
@@ -216,15 +216,15 @@ impl Flight {
                 yaw_rad: course.goal_yaw_rad,
                 too_low_m: Some(state.position_ned_m.z - course.start_ned_m.z),
             },
-            view: said.view,
+            view: perception.view,
         };
         let decision = steering.update(&observation);
         cost.steer = begun.elapsed();
         self.waiting.push_back(decision.command);
         let acting = self.waiting.pop_front().unwrap_or(decision.command);
-        let record = record(course, &moment, &state, &said, decision, acting);
-        let Said { image, divergences, ref cue, .. } = said;
-        show(&Seen { image, cue: cue.as_ref(), steering, divergences, record: &record })?;
+        let record = record(course, &input, &state, &perception, decision, acting);
+        let Perception { image, divergences, ref cue, .. } = perception;
+        show(&FlightFrame { image, cue: cue.as_ref(), steering, divergences, record: &record })?;
         let begun = Instant::now();
         self.tally.add(&record);
         let outcome = self.advance(&acting, &record);
@@ -280,25 +280,25 @@ impl Flight {
                 _ => (),
             }
         }
-        self.eye.push_gyro(sample);
+        self.sensor.push_gyro(sample);
     }
 }
 
 /// What is kept of a frame.
 fn record(
     course: &Course,
-    at: &Moment<'_>,
+    at: &SensorInput<'_>,
     state: &VehicleState,
-    said: &Said<'_>,
+    perception: &Perception<'_>,
     decision: Decision,
     acting: Command,
 ) -> Record {
     let motion = at.velocity_world_m_s;
     let ahead = at.pose.world_from_camera.transpose() * motion.normalize_or(DVec3::X);
     let true_rate_hz = course.world.seen(&at.pose, ahead).nearness_per_m * motion.length();
-    let heading = said.view.map(|view| view.heading).filter(Heading::is_known);
-    let sectors = said.view.map(|view| view.sectors).or(said.cue.as_ref().map(|cue| cue.sectors));
-    let contact_s = said.view.and_then(|View { sectors, .. }| ahead_s(sectors, ahead));
+    let heading = perception.view.map(|view| view.heading).filter(Heading::is_known);
+    let sectors = perception.view.map(|view| view.sectors).or(perception.cue.as_ref().map(|cue| cue.sectors));
+    let contact_s = perception.view.and_then(|View { sectors, .. }| ahead_s(sectors, ahead));
     Record {
         frame: at.frame,
         time_s: at.time_s,
@@ -310,12 +310,12 @@ fn record(
         clearance_m: course.world.clearance_m(state.position_ned_m),
         progress_m: course.progress_m(state.position_ned_m),
         offset_m: course.offset_m(state.position_ned_m),
-        invalid: said.invalid.clone(),
+        invalid: perception.invalid.clone(),
         coverage: sectors.map_or(0.0, Sectors::coverage),
         heading_error_rad: heading.map(|heading| heading.direction.angle_between(ahead)),
         contact_s,
         true_contact_s: (true_rate_hz > 0.0).then(|| true_rate_hz.recip()),
-        measured: said.measured,
+        measured: perception.measured,
         command: decision.command,
         source: decision.source,
         danger: decision.danger,

@@ -101,7 +101,7 @@ impl Summary {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Drawing the picture, or finding the true flow.
-    pub sight: Duration,
+    pub sensor: Duration,
     /// From the picture to the sectors.
     pub pipeline: Duration,
     /// From the sectors to a command.
@@ -113,7 +113,7 @@ pub struct Cost {
 impl Cost {
     /// All together.
     pub fn total(&self) -> Duration {
-        self.sight + self.pipeline + self.steer + self.vehicle
+        self.sensor + self.pipeline + self.steer + self.vehicle
     }
 }
 

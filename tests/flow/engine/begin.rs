@@ -2,7 +2,7 @@
 
 use viewsphere::Error;
 use viewsphere::frame::{FlowField, Image, Plane, Size, UNKNOWN_FLOW};
-use viewsphere::{Config, Engine, Extras};
+use viewsphere::{Config, Engine, FrameInputs};
 
 use super::pictures::{assert_same, backends, bits, engine, flows, gray};
 
@@ -20,8 +20,8 @@ fn constant(uv: [f32; 2]) -> FlowField {
 fn begun(engine: &mut Engine, images: &[Image], initial: &FlowField) -> FlowField {
     engine.reset();
     assert!(engine.process(&images[0].frame().unwrap()).unwrap().is_none());
-    let extras = Extras { initial_flow: Some(initial), ..Extras::default() };
-    let output = engine.process_with(&images[1].frame().unwrap(), &extras).unwrap().unwrap();
+    let frame_inputs = FrameInputs { initial_flow: Some(initial), ..FrameInputs::default() };
+    let output = engine.process_with(&images[1].frame().unwrap(), &frame_inputs).unwrap().unwrap();
     output.flow.unwrap().clone()
 }
 
@@ -69,27 +69,27 @@ fn a_given_flow_is_begun_with_and_forgotten() {
 }
 
 #[test]
-fn extras_that_are_not_provided_for_or_do_not_fit_are_refused() {
+fn inputs_that_are_not_provided_for_or_do_not_fit_are_refused() {
     let images = images();
     let field = constant([1.0, 1.0]);
     let plane = Plane { size: SIZE, data: vec![1.0; SIZE.pixels()] };
     for (name, backend) in backends() {
         let mut engine = engine(&backend, SIZE, &Config::default());
         let first = images[0].frame().unwrap();
-        let extras = Extras { initial_flow: Some(&field), ..Extras::default() };
-        let error = engine.submit_with(&first, &extras).unwrap_err();
+        let frame_inputs = FrameInputs { initial_flow: Some(&field), ..FrameInputs::default() };
+        let error = engine.submit_with(&first, &frame_inputs).unwrap_err();
         assert!(matches!(error, Error::Parameter { name: "initial_flow", .. }), "{name}: {error}");
-        let extras = Extras { certainty: Some(&plane), ..Extras::default() };
-        let error = engine.submit_with(&first, &extras).unwrap_err();
+        let frame_inputs = FrameInputs { certainty: Some(&plane), ..FrameInputs::default() };
+        let error = engine.submit_with(&first, &frame_inputs).unwrap_err();
         assert!(matches!(error, Error::Parameter { name: "certainty", .. }), "{name}: {error}");
         let mut warm = Engine::new(backend, SIZE, &Config { warm_start: true, ..Config::default() }).unwrap();
         let other = FlowField { size: Size::new(97, 65), data: vec![[0.0; 2]; 97 * 65] };
-        let extras = Extras { initial_flow: Some(&other), ..Extras::default() };
-        let error = warm.submit_with(&first, &extras).unwrap_err();
+        let frame_inputs = FrameInputs { initial_flow: Some(&other), ..FrameInputs::default() };
+        let error = warm.submit_with(&first, &frame_inputs).unwrap_err();
         assert!(matches!(error, Error::SizeMismatch { .. }), "{name}: {error}");
         let short = FlowField { size: SIZE, data: vec![[0.0; 2]; 5] };
-        let extras = Extras { initial_flow: Some(&short), ..Extras::default() };
-        let error = warm.submit_with(&first, &extras).unwrap_err();
+        let frame_inputs = FrameInputs { initial_flow: Some(&short), ..FrameInputs::default() };
+        let error = warm.submit_with(&first, &frame_inputs).unwrap_err();
         assert!(matches!(error, Error::Length { found: 5, .. }), "{name}: {error}");
         assert_eq!((engine.stats().submitted, warm.stats().submitted), (0, 0));
     }

@@ -1,0 +1,55 @@
+//! As [`super::solve`], with the displacement that solves the averaged equations added to the flow so far.
+//!
+//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3, with equations in which the
+//! flow so far is not carried: a step of Newton's method for each pixel, as that of Lucas and Kanade is (Bouguet, Pyramidal
+//! implementation of the Lucas Kanade feature tracker, 2001).
+
+use super::solve::{self, average, displacement};
+use super::test_inputs::{Fill, planes};
+use crate::frame::Size;
+use crate::kernel::{Case, Tolerance, kernel};
+
+pub use super::solve::Params;
+
+kernel!(
+    "solve_increment" + ["image", "window", "average", "solution"],
+    reference(Params; columns, window, so_far) -> (flow),
+    cases: cases,
+    tolerance: Tolerance {
+        absolute: 1e-30,
+        relative: 0.0, of_largest: 0.0,
+        reason: "as of solve, and that of the sum",
+    },
+    rounding: rounding,
+);
+
+fn reference(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], flow: &mut [f32]) {
+    let stride = Size::new(p.width, p.height).stride();
+    average(p, columns, window, flow, 2, #[inline(always)] |y, averages, rows| {
+        let (u, v) = rows.split_at_mut(stride);
+        let (u_0, v_0) = so_far[2 * y * stride..][..2 * stride].split_at(stride);
+        for x in 0..p.width as usize {
+            let [d_x, d_y] = displacement(averages.map(|average| average[x]));
+            u[x] = u_0[x] + d_x;
+            v[x] = v_0[x] + d_y;
+        }
+    });
+}
+
+/// How far roundings may drive the two sides apart: as those of [`solve`], and one of the sum.
+fn rounding(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], bound: &mut [f32]) {
+    let mut flow = vec![0.0; bound.len()];
+    reference(p, columns, window, so_far, &mut flow);
+    solve::rounding(p, columns, window, bound);
+    for (bound, flow) in bound.iter_mut().zip(flow) {
+        *bound += f32::EPSILON * (flow.abs() + *bound);
+    }
+}
+
+fn cases(size: Size) -> Vec<Case> {
+    let mut cases = solve::cases(size);
+    for case in &mut cases {
+        case.inputs.push(planes(size, 2, Fill::Textured, [-6.0, 6.0], 9));
+    }
+    cases
+}

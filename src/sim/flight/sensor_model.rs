@@ -1,0 +1,125 @@
+//! Whatever the flight sees by.
+
+use std::time::Instant;
+
+use glam::DVec3;
+
+use super::camera_sensor::CameraSensor;
+use super::config::{FlightConfig, Sensor};
+use super::measure::{Divergences, Measured};
+use super::record::Cost;
+use super::true_sensor::TrueSensor;
+use crate::backend::Backend;
+use crate::camera::{Camera, FRD_FROM_CAMERA, Pose};
+use crate::error::Result;
+use crate::frame::Image;
+use crate::imu::{Gyro, GyroConfig, GyroSample};
+use crate::pipeline::{Cue, Invalid};
+use crate::sim::{Random, World};
+use crate::sphere::Heading;
+use crate::steer::View;
+
+/// Whatever the flight sees by.
+pub(super) enum SensorModel {
+    /// The world itself, what the gyro tells, and the time of the frame before.
+    True(Box<TrueSensor>, Box<Gyro>, Option<f64>),
+    /// A camera and a pipeline.
+    Camera(Box<CameraSensor>),
+}
+
+/// What a sensor is given for a frame.
+pub(super) struct SensorInput<'a> {
+    pub(super) world: &'a World,
+    pub(super) pose: Pose,
+    pub(super) velocity_world_m_s: DVec3,
+    /// Which way the camera moves, in its own frame, where vanes tell.
+    pub(super) heading: Option<Heading>,
+    pub(super) frame: u64,
+    pub(super) time_s: f64,
+}
+
+/// What a sensor tells of a frame.
+#[derive(Default)]
+pub(super) struct Perception<'a> {
+    pub(super) image: Option<&'a Image>,
+    pub(super) cue: Option<Cue<'a>>,
+    pub(super) view: Option<View<'a>>,
+    /// Why there is no view.
+    pub(super) invalid: Option<String>,
+    /// How far it is from the truth, where that is asked for.
+    pub(super) measured: Option<Measured>,
+    pub(super) divergences: Option<&'a Divergences>,
+}
+
+impl SensorModel {
+    pub(super) fn new(
+        backends: [Backend; 2],
+        world: &World,
+        config: &FlightConfig,
+        random: Random,
+    ) -> Result<Self> {
+        if config.sensor == Sensor::Images {
+            return Ok(Self::Camera(Box::new(CameraSensor::new(backends, world, config, random)?)));
+        }
+        let ideal = config.pipeline.ideal(&config.camera)?;
+        let view = &config.pipeline.sphere;
+        let sensor = TrueSensor::new(&ideal, view, config.sensor, config.flow_noise, random)?;
+        Ok(Self::True(Box::new(sensor), Box::new(Gyro::new(gyro_config())?), None))
+    }
+
+    /// The pinhole in whose pictures it looks.
+    pub(super) fn ideal(&self) -> &Camera {
+        match self {
+            Self::Camera(sensor) => sensor.ideal(),
+            Self::True(sensor, ..) => sensor.ideal(),
+        }
+    }
+
+    pub(super) fn push_gyro(&mut self, sample: GyroSample) {
+        match self {
+            Self::True(_, gyro, _) => gyro.push(sample),
+            Self::Camera(sensor) => sensor.push_gyro(sample),
+        }
+    }
+
+    /// Looks at the world.
+    pub(super) fn sense(
+        &mut self,
+        at: &SensorInput<'_>,
+        config: &FlightConfig,
+        cost: &mut Cost,
+    ) -> Result<Perception<'_>> {
+        match self {
+            Self::Camera(sensor) => sensor.sense(at, &config.faults, cost),
+            Self::True(sensor, gyro, before_s) => {
+                let begun = Instant::now();
+                let before_s = before_s.replace(at.time_s);
+                let turn = before_s.map(|before_s| (gyro.prev_from_cur(before_s, at.time_s), before_s));
+                let perception = match turn {
+                    Some((Ok(turn), before_s)) => match sensor.sense(at, &turn, at.time_s - before_s) {
+                        Some(view) => Perception { view: Some(view), ..Perception::default() },
+                        None => Perception::invalid(&Invalid::First),
+                    },
+                    Some((Err(fault), _)) => Perception::invalid(&Invalid::Gyro(fault)),
+                    None => {
+                        sensor.begin(at.pose);
+                        Perception::invalid(&Invalid::First)
+                    }
+                };
+                cost.sensor = begun.elapsed();
+                Ok(perception)
+            }
+        }
+    }
+}
+
+impl Perception<'_> {
+    fn invalid(why: &Invalid) -> Self {
+        Self { invalid: Some(why.to_string()), ..Self::default() }
+    }
+}
+
+/// How the gyro's samples, in the body's frame, belong to a camera that looks along the body's x axis.
+pub(super) fn gyro_config() -> GyroConfig {
+    GyroConfig { camera_from_gyro: FRD_FROM_CAMERA.transpose(), ..GyroConfig::default() }
+}

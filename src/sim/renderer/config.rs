@@ -1,0 +1,45 @@
+use crate::error::{Error, Result};
+
+/// How a [`Renderer`](super::Renderer) draws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RendererConfig {
+    /// Standard deviation of the noise of a pixel, in gray levels of 255: 0 to 64.
+    pub noise_levels: f64,
+    /// Poses over which an exposure is averaged, 1 to 8: see [`Renderer::expose`](super::Renderer::expose). 1 is no
+    /// motion blur.
+    pub blur_poses: usize,
+    /// Surfaces whose nearest point is further away are not shown, metres: above 0, without limit by default.
+    pub range_m: f64,
+}
+
+impl Default for RendererConfig {
+    fn default() -> Self {
+        Self { noise_levels: 2.0, blur_poses: 1, range_m: f64::INFINITY }
+    }
+}
+
+impl RendererConfig {
+    /// The largest [`RendererConfig::blur_poses`].
+    pub const MAX_POSES: usize = 8;
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] naming the first field that is out of range.
+    pub fn validate(&self) -> Result<()> {
+        if !(0.0..=64.0).contains(&self.noise_levels) {
+            return Err(Error::parameter("noise_levels", self.noise_levels, "0 to 64 gray levels"));
+        }
+        if !(1..=Self::MAX_POSES).contains(&self.blur_poses) {
+            return Err(Error::parameter(
+                "blur_poses",
+                self.blur_poses,
+                format_args!("1 to {}", Self::MAX_POSES),
+            ));
+        }
+        if !(self.range_m > 0.0) {
+            return Err(Error::parameter("range_m", self.range_m, "above 0 m"));
+        }
+        Ok(())
+    }
+}
