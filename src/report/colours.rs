@@ -1,8 +1,6 @@
 //! The colours of pictures.
 
-#[cfg(feature = "sim")]
 pub(super) const BACKGROUND: [u8; 3] = [22, 26, 33];
-#[cfg(feature = "sim")]
 pub(super) const FRAME: [u8; 3] = [11, 13, 17];
 pub(super) const TEXT: [u8; 3] = [236, 240, 246];
 pub(super) const DIM: [u8; 3] = [150, 160, 176];

@@ -6,6 +6,7 @@ mod campaign;
 #[cfg(feature = "sim")]
 mod canvas;
 mod colour_wheel;
+#[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "most are for pages of flights"))]
 mod colours;
 mod divergence;
 #[cfg(feature = "sim")]
