@@ -21,6 +21,7 @@ use crate::frame::Size;
 
 /// A planar camera: a pinhole behind a lens, without skew.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Camera {
     /// Width and height of its pictures.
     pub size: Size,

@@ -15,6 +15,7 @@ use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
 use crate::eval::{Scene, endpoint_error, flow_error};
 use crate::frame::{FlowField, Image, Plane, Size, arrows, colour_wheel, flo, picture};
+use crate::quantile::sorted;
 
 /// Frames that are streamed for the speed, beside the first.
 const STREAMED: u32 = 20;
@@ -89,7 +90,7 @@ impl Demo {
             engine.process(&frame)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
-        times.sort_by(f64::total_cmp);
+        let times = sorted(times);
         let median = times[times.len() / 2];
         let report = Report {
             backend: engine.adapter(),

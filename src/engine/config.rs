@@ -30,6 +30,7 @@ impl Backend {
 
 /// What an engine does when the GPU is lost and cannot be brought back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum OnLoss {
     /// Every further call is [`Error::DeviceLost`].
     #[default]
@@ -40,6 +41,7 @@ pub enum OnLoss {
 
 /// How an engine works.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Config {
     /// The estimator's parameters.
     pub flow: Farneback,

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 
 /// Width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Size {
     /// Pixels in a row.
     pub width: u32,

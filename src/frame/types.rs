@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 
 /// How a pixel is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum PixelFormat {
     /// One byte, 0 to 255.
     Gray8,
@@ -134,6 +135,7 @@ impl Image {
 
 /// A plane of one `f32` a pixel, rows without gaps: a certainty, a confidence, a depth.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Plane {
     /// Width and height.
     pub size: Size,

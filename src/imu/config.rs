@@ -18,6 +18,7 @@ pub struct GyroSample {
 
 /// How a gyro's samples belong to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct GyroConfig {
     /// What the gyro says at rest, in its own frame, rad/s. It is taken off every sample.
     pub bias_rad_s: DVec3,

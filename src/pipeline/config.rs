@@ -9,6 +9,7 @@ use crate::sphere::{Alarm, Fields, Sphere};
 
 /// How a [`Pipeline`](super::Pipeline) works.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PipelineConfig {
     /// The estimator, the frames' format, and how the stream is run. Frames are dropped before they are submitted, if at
     /// all: [`Config::drop_oldest`] and [`Config::warm_start`] must be off. With

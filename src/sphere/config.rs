@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 
 /// Where the camera's turn is taken out of the flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Derotation {
     /// Before the flow: the frame before is resampled as the turned camera would have seen it, so that only what is
     /// left has to be found. Most accurate in hard turns; the frame before is expanded once more for every pair.
@@ -18,6 +19,7 @@ pub enum Derotation {
 
 /// How the flow on the view sphere is summed up.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sphere {
     /// Where the camera's turn is taken out.
     pub derotation: Derotation,

@@ -27,6 +27,7 @@ pub(crate) struct Eye<'a> {
 
 /// Fields that are read beside the sectors, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fields {
     /// Nearness rate, divergence, error and trust of each cell.
     pub looming: bool,

@@ -32,7 +32,7 @@ use crate::sim::flight::{
     self, FRAME_S, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, Record, Seen, Sensor, Summary,
 };
 use crate::sim::{Course, CourseKind};
-use crate::steer::{Danger, Policy, SteerConfig};
+use crate::steer::{Danger, Policy, SteerParams};
 
 /// Fly through a made-up world on what the view says, and write down how that went.
 ///
@@ -235,7 +235,7 @@ impl Fly {
             speed_m_s: self.speed,
             sensor: if self.truth_flow { Sensor::Flow } else { self.sensor },
             camera: flight::camera(self.size),
-            steer: SteerConfig { policy: self.policy, danger: self.danger, ..SteerConfig::default() },
+            steer: SteerParams { policy: self.policy, danger: self.danger, ..SteerParams::default() },
             latency_frames: self.latency_frames,
             faults: self.faults.clone(),
             measure: self.measure.measure,

@@ -6,6 +6,7 @@
 //! together again.
 
 mod faults;
+#[cfg(feature = "cli")]
 mod fingerprint;
 mod job;
 #[cfg(feature = "cli")]
@@ -23,6 +24,7 @@ mod table;
 mod testing;
 
 pub use faults::Faults;
+#[cfg(feature = "cli")]
 pub use fingerprint::fingerprint;
 pub use job::{Job, Setting};
 #[cfg(feature = "cli")]

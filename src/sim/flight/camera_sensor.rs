@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use super::config::FlightConfig;
-use super::eye::{Moment, Said};
+use super::cost::Cost;
 use super::fault::{Fault, FaultKind};
 use super::measure::Measure;
-use super::record::Cost;
+use super::perception::{Perception, SensorInput};
 use crate::camera::{Camera, Pose};
 use crate::engine::Backend;
 use crate::error::{Error, Result};
@@ -18,7 +18,7 @@ use crate::sim::{Random, World};
 use crate::steer::View;
 
 /// Draws pictures and has a pipeline look at them.
-pub(super) struct CameraEye {
+pub(super) struct CameraSensor {
     sight: Sight,
     pipeline: Pipeline,
     image: Image,
@@ -29,7 +29,7 @@ pub(super) struct CameraEye {
     measure: Option<Measure>,
 }
 
-impl CameraEye {
+impl CameraSensor {
     pub(super) fn new(
         [sight, flow]: [Backend; 2],
         world: &World,
@@ -57,7 +57,12 @@ impl CameraEye {
     }
 
     /// Looks at the world. The picture is there even if the pipeline says nothing of it.
-    pub(super) fn look(&mut self, at: &Moment<'_>, faults: &[Fault], cost: &mut Cost) -> Result<Said<'_>> {
+    pub(super) fn sense(
+        &mut self,
+        at: &SensorInput<'_>,
+        faults: &[Fault],
+        cost: &mut Cost,
+    ) -> Result<Perception<'_>> {
         let acts = |kind: FaultKind| faults.iter().any(|fault| fault.kind == kind && fault.acts(at.time_s));
         let begun = Instant::now();
         if acts(FaultKind::Black) {
@@ -77,7 +82,7 @@ impl CameraEye {
         let dropped = shares.fold(0.0, f64::max);
         if dropped > 0.0 && self.random.uniform() < dropped {
             let invalid = Some("the frame was dropped".to_owned());
-            return Ok(Said { image: Some(&self.image), invalid, ..Said::default() });
+            return Ok(Perception { image: Some(&self.image), invalid, ..Perception::default() });
         }
         let due = |fault: &&Fault| fault.kind == FaultKind::DeviceLost && fault.from_s <= at.time_s;
         let due = faults.iter().filter(due).count();
@@ -104,7 +109,7 @@ impl CameraEye {
         };
         let divergences = self.measure.as_ref().map(Measure::divergences).filter(|_| measured.is_some());
         Ok(match cue {
-            Ok(cue) => Said {
+            Ok(cue) => Perception {
                 image: Some(&self.image),
                 measured,
                 divergences,
@@ -112,9 +117,14 @@ impl CameraEye {
                 invalid: cue.invalid.map(|invalid| invalid.to_string()),
                 cue: Some(cue),
             },
-            Err(lost) => Said { image: Some(&self.image), invalid: Some(lost.to_owned()), ..Said::default() },
+            Err(lost) => Perception {
+                image: Some(&self.image),
+                invalid: Some(lost.to_owned()),
+                ..Perception::default()
+            },
         })
     }
+
     /// Remembers from where the picture was taken, where that is asked for.
     fn show(&mut self, pose: Option<Pose>) {
         if let Some(measure) = &mut self.measure {

@@ -2,33 +2,19 @@
 
 use glam::{DMat3, DVec3};
 
-use super::config::{FlowNoise, Sensor};
-use super::eye::Moment;
+use super::perception::SensorInput;
+use super::sensor::{FlowNoise, Sensor};
+use super::true_flow::true_flow;
 use crate::camera::{Camera, Pose};
 use crate::error::Result;
 use crate::frame::Plane;
+use crate::quantile::nearest;
 use crate::sim::{Random, RayTable, nearness};
-use crate::sphere::{
-    CellFlow, Heading, HeadingFilter, HeadingModel, Sector, Sectors, Sphere, Summary, model,
-};
+use crate::sphere::{CellFlow, Heading, HeadingFilter, HeadingModel, Sector, Sectors, Sphere, Summary};
 use crate::steer::View;
 
-/// How what is seen at a bearing and a nearness moved from one exact pose to the next, a turn taken out: where it is half-way,
-/// and the flow there in radians.
-pub(super) fn true_flow(
-    bearing: DVec3,
-    nearness_per_m: f64,
-    [before, pose]: [&Pose; 2],
-    prev_from_cur: &DMat3,
-) -> (DVec3, DVec3) {
-    let from_before =
-        nearness_per_m * (pose.position_world - before.position_world) + pose.world_from_camera * bearing;
-    let seen_before = before.world_from_camera.transpose() * from_before.normalize();
-    model::midpoint_flow(prev_from_cur.transpose() * seen_before, bearing)
-}
-
 /// Sees through a pinhole that has a pixel for each cell of the view.
-pub(super) struct TrueEye {
+pub(super) struct TrueSensor {
     ideal: Camera,
     sensor: Sensor,
     noise: FlowNoise,
@@ -46,7 +32,7 @@ pub(super) struct TrueEye {
     before: Option<Pose>,
 }
 
-impl TrueEye {
+impl TrueSensor {
     pub(super) fn new(
         ideal: &Camera,
         view: &Sphere,
@@ -93,7 +79,7 @@ impl TrueEye {
     }
 
     /// What the view says at a moment; none of a first look. The turn is what the gyro tells of it.
-    pub(super) fn look(&mut self, at: &Moment<'_>, turn: &DMat3, interval_s: f64) -> Option<View<'_>> {
+    pub(super) fn sense(&mut self, at: &SensorInput<'_>, turn: &DMat3, interval_s: f64) -> Option<View<'_>> {
         let before = self.before.replace(at.pose)?;
         let near = nearness(at.world, &self.coarse, &at.pose);
         if self.sensor == Sensor::Depth {
@@ -177,8 +163,7 @@ impl TrueEye {
             let (rates, cells) = (&mut rates[at], cells[at]);
             let p = grid.bearing(at % grid.columns, at / grid.columns);
             rates.sort_by(f64::total_cmp);
-            let rank = |share: f64| ((rates.len().max(1) - 1) as f64 * share).round() as usize;
-            let rate = |share: f64| rates.get(rank(share)).copied().unwrap_or(0.0);
+            let rate = |share: f64| nearest(rates, share).unwrap_or(0.0);
             *sector = Sector {
                 coverage: rates.len() as f64 / cells.max(1) as f64,
                 confidence: 1.0,
