@@ -14,6 +14,7 @@ use glam::{DMat3, DVec3};
 
 pub use file::{Format, decode, kalibr, opencv, read, ros, write};
 pub use lens::Lens;
+pub(crate) use pose::is_rotation;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
 pub use view::View;
 

@@ -1,7 +1,7 @@
 //! How the view sphere is looked at.
 
 use super::HeadingModel;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_ranges};
 
 /// Where the camera's turn is taken out of the flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,16 +79,11 @@ impl Sphere {
                 return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
             }
         }
-        for (name, value, low, high) in [
+        in_ranges(&[
             ("quantile", self.quantile, 0.5, 0.99),
             ("least_trust", self.least_trust, 0.01, 0.9),
             ("noise_px", self.noise_px, 1e-6, 10.0),
             ("margin_px", self.margin_px, 0.0, 1000.0),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
-            }
-        }
-        Ok(())
+        ])
     }
 }

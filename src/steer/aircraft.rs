@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use crate::camera::FRD_FROM_CAMERA;
+use crate::camera::{FRD_FROM_CAMERA, is_rotation};
 use crate::error::{Error, Result, in_ranges};
 
 /// The aircraft as steering sees it.
@@ -58,10 +58,9 @@ impl Aircraft {
     pub fn validate(&self) -> Result<()> {
         in_ranges(&[("latency_s", self.latency_s, 0.0, 1.0)])?;
         self.response.validate()?;
-        let m = self.body_from_camera;
-        let off = (m * m.transpose() - DMat3::IDENTITY).to_cols_array();
-        if !(off.iter().all(|e| e.abs() <= 1e-3) && m.determinant() > 0.0) {
-            return Err(Error::parameter("body_from_camera", m, "a rotation, of determinant 1"));
+        if !is_rotation(&self.body_from_camera) {
+            let found = self.body_from_camera;
+            return Err(Error::parameter("body_from_camera", found, "a rotation, of determinant 1"));
         }
         Ok(())
     }

@@ -61,8 +61,8 @@ impl Number {
 }
 
 /// The kind of a surface.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Deserialize)]
+#[serde(variant_identifier, rename_all = "lowercase", expecting = "the name of a kind")]
 pub(super) enum Kind {
     Ground,
     Plane,
@@ -79,10 +79,10 @@ pub(super) struct SurfaceHead {
     pub(super) kind: Kind,
 }
 
-/// A surface to be written, with the members of its kind.
+/// An entry of the list of surfaces as it is written, with the members of its kind.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
-pub(super) enum Surface {
+pub(super) enum Entry {
     Ground,
     Plane(Plane),
     Rectangle(Rectangle),

@@ -7,7 +7,7 @@ use serde::de::IgnoredAny;
 use serde_json::Serializer;
 use serde_json::ser::{CompactFormatter, Formatter};
 
-use super::format::{CourseFile, Cuboid, Cylinder, FORMAT, Number, Plane, Rectangle, Surface, VERSION};
+use super::format::{CourseFile, Cuboid, Cylinder, Entry, FORMAT, Number, Plane, Rectangle, VERSION};
 use crate::error::{Error, Result};
 use crate::frame::write_bytes;
 use crate::sim::Form;
@@ -56,26 +56,26 @@ pub fn encode(course: &Course) -> Result<String> {
     String::from_utf8(text).map_err(|error| wrong(error.to_string()))
 }
 
-fn members(form: Form) -> Surface {
+fn members(form: Form) -> Entry {
     let _kind = IgnoredAny;
     match form {
-        Form::Plane { point_world, normal_world } if [point_world, normal_world] == GROUND => Surface::Ground,
+        Form::Plane { point_world, normal_world } if [point_world, normal_world] == GROUND => Entry::Ground,
         Form::Plane { point_world, normal_world } => {
-            Surface::Plane(Plane { _kind, point_m: vector(point_world), normal: vector(normal_world) })
+            Entry::Plane(Plane { _kind, point_m: vector(point_world), normal: vector(normal_world) })
         }
         Form::Rectangle { centre_world, to_right, to_top } => {
             let [centre_m, to_right_m, to_top_m] = [centre_world, to_right, to_top].map(vector);
-            Surface::Rectangle(Rectangle { _kind, centre_m, to_right_m, to_top_m })
+            Entry::Rectangle(Rectangle { _kind, centre_m, to_right_m, to_top_m })
         }
         Form::Cylinder { base_world, top_world, radius_m } => {
             let [base_m, top_m] = [base_world, top_world].map(vector);
-            Surface::Cylinder(Cylinder { _kind, base_m, top_m, radius_m: Number(radius_m) })
+            Entry::Cylinder(Cylinder { _kind, base_m, top_m, radius_m: Number(radius_m) })
         }
         Form::Cuboid { centre_world, world_from_box, edges_m } => {
             let turned = world_from_box != DMat3::IDENTITY;
             let axes = turned.then(|| world_from_box.to_cols_array_2d().map(|axis| axis.map(Number)));
             let [centre_m, edges_m] = [centre_world, edges_m].map(vector);
-            Surface::Box(Cuboid { _kind, centre_m, edges_m, yaw_rad: None, axes })
+            Entry::Box(Cuboid { _kind, centre_m, edges_m, yaw_rad: None, axes })
         }
     }
 }
