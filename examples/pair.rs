@@ -1,8 +1,8 @@
 //! The flow from one picture to another, as a `.flo` file: `pair a.png b.png out.flo`.
 
-use viewsphere::engine::{Backend, Config, Engine};
 use viewsphere::frame::{flo, picture};
 use viewsphere::gpu::{Gpu, GpuOptions};
+use viewsphere::{Backend, Config, Engine};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -2,9 +2,10 @@
 //!
 //! One frame is computed while the next one is read from the disk.
 
-use viewsphere::engine::{Backend, Config, Engine, Ticket};
 use viewsphere::frame::{FlowField, Frames, Image};
 use viewsphere::gpu::{Gpu, GpuOptions};
+use viewsphere::stream::Ticket;
+use viewsphere::{Backend, Config, Engine};
 
 type Failure = Box<dyn std::error::Error>;
 

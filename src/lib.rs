@@ -27,6 +27,7 @@
 //! With [`Backend::Gpu`] the same frames go through WGSL kernels on any GPU that `wgpu` reaches; a stated bound holds
 //! between the two (see [`kernels`] and `viewsphere crosscheck`). The layers are described in `ARCHITECTURE.md`.
 
+mod backend;
 pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -45,13 +46,17 @@ pub mod pipeline;
 pub mod plan;
 mod quantile;
 pub mod report;
+pub mod runner;
 pub mod sim;
 pub mod sphere;
 pub mod steer;
+pub mod stream;
 
 /// The vectors and matrices of this crate's interface.
 pub use glam;
 
-pub use engine::{Backend, Config, Engine, Extras, OnLoss, Output, Ticket};
+pub use backend::Backend;
+pub use engine::{Config, Engine, Extras, Output, OwnedOutput};
 pub use error::{Error, Result};
 pub use pipeline::{Cue, Pipeline, PipelineConfig};
+pub use stream::{OnLoss, StreamConfig, Ticket};

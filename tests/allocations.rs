@@ -1,5 +1,7 @@
 //! What a frame allocates once a stream has begun.
 //!
+//! A process of its own: the allocator that counts is the whole program's, and no other test may run beside this one.
+//!
 //! On the CPU it is nothing: where a picture is large enough to be shared out, rayon takes a block for its queue of jobs
 //! now and then. On the GPU wgpu allocates in every submission, so the engine is held against the same work done with
 //! wgpu by hand. The two differ by a few, within [`SLACK`] a frame: wgpu itself is not the same in both (a bare `unmap`
@@ -8,15 +10,18 @@
 //! buffer or as many as a step's worth is ours; that what is held does not grow is exact.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
-mod common;
+#[path = "common/need.rs"]
+#[expect(dead_code, reason = "the CPU is tested in any case")]
+mod need;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
 
-use viewsphere::engine::{Backend, Config, Engine};
+use viewsphere::flow;
 use viewsphere::frame::{Frame, PixelFormat, Size};
-use viewsphere::gpu::{Gpu, GpuExecutor, GpuOptions};
-use viewsphere::plan::{Plan, Shape};
+use viewsphere::gpu::{Gpu, GpuExecutor};
+use viewsphere::plan::Plan;
+use viewsphere::{Backend, Config, Engine, StreamConfig};
 use wgpu::{BufferDescriptor, BufferUsages, MapMode, PollType};
 
 /// Counts what goes through the system's allocator.
@@ -85,8 +90,8 @@ fn stream(backend: Backend, size: Size, config: &Config) -> (u64, i64) {
 fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
     let (device, queue) = (gpu.device(), gpu.queue());
     let exec = GpuExecutor::new(gpu, plan).unwrap();
-    let (frame_bytes, flow_bytes) =
-        (4 * plan.buf(plan.frame).len as u64, 4 * Shape::planar(plan.size, 2).len() as u64);
+    let (frame, flow) = (&plan.inputs[0], plan.output("flow").unwrap());
+    let (frame_bytes, flow_bytes) = (4 * frame.kind.len() as u64, 4 * flow.kind.len() as u64);
     let buffer = |size, usage, mapped_at_creation| {
         device.create_buffer(&BufferDescriptor { label: Some("by hand"), size, usage, mapped_at_creation })
     };
@@ -98,13 +103,13 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
         drop(view);
         upload.unmap();
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(&upload, 0, exec.buf(plan.frame), 0, frame_bytes);
+        encoder.copy_buffer_to_buffer(&upload, 0, exec.buf(frame.bufs[i & 1]), 0, frame_bytes);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             exec.record_ingest(&mut pass, i & 1);
             exec.record_pair(&mut pass, i & 1);
         }
-        encoder.copy_buffer_to_buffer(exec.buf(plan.flow[i & 1]), 0, &readback, 0, flow_bytes);
+        encoder.copy_buffer_to_buffer(exec.buf(flow.bufs[i & 1]), 0, &readback, 0, flow_bytes);
         let submission_index = Some(queue.submit([encoder.finish()]));
         upload.map_async(MapMode::Write, .., |_| {});
         readback.map_async(MapMode::Read, .., |_| {});
@@ -118,7 +123,14 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
 #[test]
 fn a_frame_takes_no_memory() {
     let small = Size::new(64, 48);
-    for config in [Config::default(), Config { timestamps: true, warm_start: true, ..Config::default() }] {
+    for config in [
+        Config::default(),
+        Config {
+            stream: StreamConfig { timestamps: true, ..StreamConfig::default() },
+            warm_start: true,
+            ..Config::default()
+        },
+    ] {
         assert_eq!(stream(Backend::Cpu, small, &config), (0, 0), "on the CPU");
     }
     let (count, live) = stream(Backend::Cpu, Size::new(320, 240), &Config::default());
@@ -126,12 +138,11 @@ fn a_frame_takes_no_memory() {
     assert!(count <= FRAMES as u64, "{count} allocations in {FRAMES} frames");
     assert!(live.abs() < 64 << 10, "{live} bytes");
 
-    let Some(gpu) = common::gpu() else { return };
+    let Some(gpu) = need::gpu_if_any() else { return };
     let config = Config::default();
-    let plan = config.flow.plan(small, config.format).unwrap();
+    let plan = flow::plan(&config.algorithm, small, config.format, config.options()).unwrap();
     // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
-    let name = gpu.adapter().name.clone();
-    let open = || Gpu::new(&GpuOptions { adapter: Some(name.clone()), allow_software: true }).unwrap();
+    let open = || gpu.reopen().unwrap();
     let (hand, hand_live) = by_hand(&open(), &plan);
     let (ours, live) = stream(Backend::Gpu(open()), small, &config);
     eprintln!("by hand: {hand} allocations in {FRAMES} frames, {hand_live} bytes more held");

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::print;
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, GpuOptions};
 

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::args::FlowArgs;
 use super::backend::BackendArgs;
 use super::eval::Figures;
 use super::flow::gray;
+use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
 use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
@@ -64,8 +64,8 @@ struct Report {
 
 impl Demo {
     pub(super) fn run(&self) -> Result<Outcome> {
-        let mut config = Config { flow: self.flow.farneback()?, ..Config::default() };
-        config.flow.confidence = true;
+        let mut config = Config { algorithm: self.flow.algorithm()?, ..Config::default() };
+        config.confidence = true;
         input::folder(&self.output)?;
         let mut engine = Engine::new(self.backend.open_for_shaders()?, self.size, &config)?;
         let scene = Scene::new(self.size)?;

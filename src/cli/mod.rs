@@ -6,7 +6,6 @@
 mod args;
 mod backend;
 mod bench;
-mod buffers;
 mod campaign;
 mod crosscheck;
 mod demo;
@@ -14,6 +13,7 @@ mod devices;
 mod environment;
 mod eval;
 mod flow;
+mod flow_args;
 mod fly;
 mod input;
 mod print;

@@ -1,8 +1,130 @@
-//! Estimators of optical flow. Each one builds a [`Plan`](crate::plan::Plan) and reads like its paper.
+//! Estimators of optical flow. Each one builds steps of a [`Plan`](crate::plan::Plan) and reads like its paper.
+//!
+//! To add one: `src/flow/foo.rs` with a type that is an [`Estimator`], its kernels, and the word `foo` with the type's name
+//! in the list below. From the list follow its value of [`Algorithm`], its name and its parameters' flags on the command
+//! line and in JSON, its tests of determinism, sizes and streams, and its place in `crosscheck` and `bench`.
 
-mod farneback;
+mod estimator;
+mod flow_plan;
 mod levels;
+mod parameter;
 
-pub use farneback::{Farneback, Outside, Update, Window};
-pub(crate) use farneback::{Parts, gray_step};
+pub use estimator::{Estimator, Evidence, Stages, Wanted};
+pub(crate) use flow_plan::gray_step;
+pub use flow_plan::{FlowOptions, Initial, plan};
 pub use levels::{Level, levels};
+pub use parameter::{Choice, Parameter, Parameters};
+
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::plan::Bufs;
+
+macro_rules! estimators {
+    (($d:tt) $($module:ident: $Type:ident),* $(,)?) => {
+        $(mod $module;)*
+        $(pub use $module::$Type;)*
+
+        /// A method that estimates optical flow, with its parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+        pub enum Algorithm {
+            $(#[allow(missing_docs, reason = "the type says what it is")] $Type($Type)),*
+        }
+
+        $(impl From<$Type> for Algorithm {
+            fn from(parameters: $Type) -> Self {
+                Self::$Type(parameters)
+            }
+        }
+
+        impl From<&$Type> for Algorithm {
+            fn from(parameters: &$Type) -> Self {
+                Self::$Type(parameters.clone())
+            }
+        })*
+
+        impl Algorithm {
+            /// The names of all methods, each with what it is, in one line.
+            pub const ALL: &'static [Choice] = &[$((<$Type>::NAME, <$Type>::ABOUT)),*];
+
+            /// The method of this name with the values of a preset.
+            ///
+            /// # Errors
+            /// [`Error::Parameter`] for a method or a preset that is not there.
+            pub fn named(name: &str, preset: &str) -> Result<Self> {
+                $(if name == <$Type>::NAME {
+                    return match <$Type>::preset(preset) {
+                        Some(parameters) => Ok(Self::$Type(parameters)),
+                        None => Err(unknown("preset", preset, <$Type>::PRESETS)),
+                    };
+                })*
+                Err(unknown("algorithm", name, Self::ALL))
+            }
+
+            /// The method's name.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$Type(_) => <$Type>::NAME),* }
+            }
+
+            /// The method's parameters.
+            pub fn parameters(&self) -> &'static [Parameter] {
+                match self { $(Self::$Type(_) => <$Type>::LIST),* }
+            }
+
+            /// The method's presets.
+            pub fn presets(&self) -> &'static [Choice] {
+                match self { $(Self::$Type(_) => <$Type>::PRESETS),* }
+            }
+
+            /// The value of a parameter as text; none if the method has none of this name.
+            pub fn get(&self, name: &str) -> Option<String> {
+                match self { $(Self::$Type(parameters) => parameters.get(name)),* }
+            }
+
+            /// Sets a parameter from text.
+            ///
+            /// # Errors
+            /// [`Error::Parameter`] for a parameter that is not there, and for text that is not one of its values.
+            pub fn set(&mut self, name: &str, value: &str) -> Result<()> {
+                match self { $(Self::$Type(parameters) => parameters.set(name, value)),* }
+            }
+
+            /// Checks every parameter's range.
+            ///
+            /// # Errors
+            /// [`Error::Parameter`], naming the first one that is out of range.
+            pub fn validate(&self) -> Result<()> {
+                match self { $(Self::$Type(parameters) => Estimator::validate(parameters)),* }
+            }
+
+            pub(crate) fn stages(&self, bufs: &mut Bufs, size: Size, wanted: Wanted) -> Box<dyn Stages> {
+                match self { $(Self::$Type(parameters) => Estimator::stages(parameters, bufs, size, wanted)),* }
+            }
+        }
+
+        /// Calls a macro with the modules and types of all estimators, so that tests are made from the one list.
+        #[macro_export]
+        macro_rules! for_each_estimator {
+            ($d call:ident) => { $d call! { $($module: $Type),* } };
+        }
+    };
+}
+
+estimators!(
+    ($)
+    farneback: Farneback,
+);
+
+pub use farneback::{Outside, Update, Window};
+
+impl Default for Algorithm {
+    fn default() -> Self {
+        Self::Farneback(Farneback::default())
+    }
+}
+
+fn unknown(what: &'static str, found: &str, known: &[Choice]) -> Error {
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    Error::parameter(what, format_args!("{found:?}"), names.join(", "))
+}

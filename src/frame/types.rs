@@ -27,6 +27,11 @@ impl PixelFormat {
             Self::Rgba8 => 4,
         }
     }
+
+    /// Words of four bytes of one row in a plan's buffer: every row begins at a whole word.
+    pub const fn row_words(self, width: u32) -> usize {
+        (width as usize * self.bytes()).div_ceil(4)
+    }
 }
 
 impl fmt::Display for PixelFormat {

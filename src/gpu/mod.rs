@@ -2,6 +2,7 @@
 
 mod adapter;
 mod executor;
+mod guard;
 mod reflect;
 
 use std::sync::{Arc, Mutex};

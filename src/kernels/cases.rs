@@ -2,6 +2,7 @@
 
 use crate::frame::Size;
 use crate::kernel::Case;
+use crate::plan::pack;
 
 /// What a made-up picture looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,31 +61,14 @@ impl Random {
 /// A picture of several channels with values from `low` to `high`, its rows' surplus filled as it should be.
 pub fn planes(size: Size, channels: usize, fill: Fill, [low, high]: [f32; 2], seed: u32) -> Vec<f32> {
     let mut random = Random::new(seed);
-    let stride = size.stride();
-    let mut values = Vec::with_capacity(stride * channels * size.height as usize);
-    for _ in 0..channels * size.height as usize {
-        let start = values.len();
-        values.extend((0..size.width).map(|_| fill.value(&mut random, low, high)));
-        let last = values[values.len() - 1];
-        values.resize(start + stride, last);
-    }
-    values
+    let rows = Size::new(size.width, channels as u32 * size.height);
+    pack::padded_groups(rows, |_, _| [fill.value(&mut random, low, high)])
 }
 
 /// A picture of four values a pixel, side by side in memory, each with its own range.
 pub fn quads(size: Size, fill: Fill, ranges: [[f32; 2]; 4], seed: u32) -> Vec<f32> {
     let mut random = Random::new(seed);
-    let mut values = Vec::with_capacity(4 * size.stride() * size.height as usize);
-    for _ in 0..size.height {
-        let mut pixel = [0.0; 4];
-        for x in 0..size.stride() {
-            if x < size.width as usize {
-                pixel = ranges.map(|[low, high]| fill.value(&mut random, low, high));
-            }
-            values.extend(pixel);
-        }
-    }
-    values
+    pack::padded_groups(size, |_, _| ranges.map(|[low, high]| fill.value(&mut random, low, high)))
 }
 
 /// One case a fill for kernels that read one gray picture, then tables. `rows` are the row lengths of the outputs.

@@ -37,13 +37,8 @@ impl Params {
             PixelFormat::Rgb8 => 2,
             PixelFormat::Rgba8 => 3,
         };
-        Self { width: size.width, height: size.height, row_words: row_words(size, format) as u32, format: code }
+        Self { width: size.width, height: size.height, row_words: format.row_words(size.width) as u32, format: code }
     }
-}
-
-/// `u32` words of one row in the `frame` buffer: rows begin at whole words.
-pub fn row_words(size: Size, format: PixelFormat) -> usize {
-    (size.width as usize * format.bytes()).div_ceil(4)
 }
 
 /// A 16-bit sample's unit in gray levels.
@@ -84,7 +79,7 @@ fn cases(size: Size) -> Vec<Case> {
     [PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::Rgb8, PixelFormat::Rgba8]
         .into_iter()
         .map(|format| {
-            let words = row_words(size, format) * size.height as usize;
+            let words = format.row_words(size.width) * size.height as usize;
             let mut state = 1u32;
             let frame = (0..words)
                 .map(|_| {

@@ -56,6 +56,7 @@ registry!(
     prime,
     tangent,
     trust,
+    cell_mean,
     cells,
     looming,
     sectors,

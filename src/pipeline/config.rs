@@ -1,21 +1,28 @@
-//! What a pipeline is made of and told.
+//! The configuration of a pipeline.
 
 use crate::camera::{Camera, Lens, View};
-use crate::engine::Config;
 use crate::error::{Error, Result};
-use crate::frame::Plane;
+use crate::flow::Algorithm;
+use crate::frame::{PixelFormat, Plane};
 use crate::imu::GyroConfig;
 use crate::sphere::{Alarm, Fields, Sphere};
+use crate::stream::StreamConfig;
 
 /// How a [`Pipeline`](super::Pipeline) works.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PipelineConfig {
-    /// The estimator, the frames' format, and how the stream is run. Frames are dropped before they are submitted, if at
-    /// all: [`Config::drop_oldest`] and [`Config::warm_start`] must be off. With
-    /// [`Farneback::certainty`](crate::flow::Farneback::certainty) what the frame does not show, and what the mask
-    /// hides, is left out of the expansions too, at about twice the time.
-    pub engine: Config,
+    /// The estimator of the flow and its parameters.
+    pub algorithm: Algorithm,
+    /// How the frames' pixels are stored.
+    pub format: PixelFormat,
+    /// Whether what the frame does not show, and what the mask hides, is left out of the estimator's neighbourhoods too,
+    /// at about twice the time.
+    pub certainty: bool,
+    /// Whether the flow is brought to the host.
+    pub read_flow: bool,
+    /// How the stream of frames is run. A frame that follows a dropped one has an invalid cue.
+    pub stream: StreamConfig,
     /// How the flow on the view sphere is summed up.
     pub sphere: Sphere,
     /// The pinhole whose pictures the flow is computed of, of any size. None for what the camera's own frame shows
@@ -41,7 +48,11 @@ pub struct PipelineConfig {
 impl Default for PipelineConfig {
     fn default() -> Self {
         Self {
-            engine: Config { read_flow: false, read_confidence: false, ..Config::default() },
+            algorithm: Algorithm::default(),
+            format: PixelFormat::Gray8,
+            certainty: false,
+            read_flow: false,
+            stream: StreamConfig::default(),
             sphere: Sphere::default(),
             ideal: None,
             mask: None,
@@ -61,21 +72,12 @@ impl PipelineConfig {
     /// # Errors
     /// [`Error::Parameter`], naming the first one that is out of range.
     pub fn validate(&self) -> Result<()> {
-        self.engine.validate()?;
+        self.algorithm.validate()?;
+        self.stream.validate()?;
         self.sphere.validate()?;
         self.alarm.validate()?;
         if let Some(gyro) = &self.gyro {
             gyro.validate()?;
-        }
-        for (name, on) in [
-            ("drop_oldest", self.engine.drop_oldest),
-            ("warm_start", self.engine.warm_start),
-            ("initial_flow", self.engine.flow.initial_flow),
-            ("confidence", self.engine.flow.confidence),
-        ] {
-            if on {
-                return Err(Error::parameter(name, true, "false in a pipeline"));
-            }
         }
         if !(self.max_interval_s > 0.0 && self.max_interval_s.is_finite()) {
             return Err(Error::parameter("max_interval_s", self.max_interval_s, "above 0 and finite"));

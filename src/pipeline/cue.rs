@@ -33,9 +33,17 @@ pub struct Cue<'a> {
     /// The flow from this frame back to the one before in pixels of the ideal picture, if it is read. With
     /// [`Derotation::Before`](crate::sphere::Derotation::Before) the camera's turn is not in it.
     pub flow: Option<&'a FlowField>,
-    /// The fields that were asked for, in the order of [`Fields`](crate::sphere::Fields): as the kernels leave them, rows
-    /// of channels, each row padded to a multiple of four values.
-    pub fields: &'a [Vec<f32>],
+    /// Nearness rate, divergence, error and trust of each cell, if [`Fields::looming`] asks for them: rows of cells, in
+    /// each row the four channels one after the other, each padded to a multiple of four values. Rates are per frame.
+    ///
+    /// [`Fields::looming`]: crate::sphere::Fields::looming
+    pub looming: Option<&'a [f32]>,
+    /// Trust, place (2) and rate (2) of each cell, if [`Fields::cells`](crate::sphere::Fields::cells) asks for them: five
+    /// channels, laid out as [`Cue::looming`].
+    pub cells: Option<&'a [f32]>,
+    /// The flow on the view sphere of each pixel, if [`Fields::tangent`](crate::sphere::Fields::tangent) asks for it: three
+    /// channels in radians, laid out as [`Cue::looming`] with pixels for cells.
+    pub tangent: Option<&'a [f32]>,
     /// Time from submit until now.
     pub latency: Duration,
 }

@@ -3,33 +3,32 @@
 mod config;
 mod cue;
 
-use std::collections::VecDeque;
-use std::time::Instant;
-
 use glam::{DMat3, DVec3};
 
 pub use config::PipelineConfig;
 pub use cue::{Cue, Invalid};
 
+use crate::backend::Backend;
 use crate::camera::Camera;
-use crate::engine::{Backend, Engine, Extras, Ticket};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::Frame;
+use crate::gpu::Gpu;
 use crate::imu::{Gyro, GyroSample};
+use crate::plan::{Plan, Value};
 use crate::sphere::{self, AlarmFilter, Cells, Eye, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
+use crate::stream::{Latency, Stats, Stream, Ticket};
 
 /// Frames of a camera go in, each with its time, and the gyro's samples; a [`Cue`] a frame comes out.
 ///
 /// All per-pixel work is one submission a frame, and only what is asked for is read back. A frame's gyro samples must be
 /// pushed before it is submitted, up to one after the middle of its exposure.
 pub struct Pipeline {
-    engine: Engine,
+    stream: Stream<Submitted>,
     config: PipelineConfig,
     ideal: Camera,
     cells: Cells,
     gyro: Option<Gyro>,
     last: Option<Last>,
-    waiting: VecDeque<Waiting>,
     sectors: Sectors,
     heading: Heading,
     /// The time of the frame that the heading is known of.
@@ -50,17 +49,15 @@ struct Last {
     digest: u64,
 }
 
-/// What is known of a frame that is being computed.
-struct Waiting {
-    frame: u64,
+/// What is known of a frame when it is submitted.
+struct Submitted {
     time_s: f64,
     before: Option<Last>,
     turn: Option<DMat3>,
     fault: Option<Invalid>,
-    submitted: Instant,
 }
 
-impl Waiting {
+impl Submitted {
     fn interval_s(&self) -> Option<f64> {
         self.before.map(|before| self.time_s - before.time_s)
     }
@@ -71,22 +68,22 @@ impl Pipeline {
     ///
     /// # Errors
     /// [`Error::Parameter`] for a parameter or camera that is out of range, [`Error::SizeMismatch`] for a mask of another
-    /// size than the camera's; and as [`Engine::new`].
+    /// size than the camera's; and as [`Stream::new`].
     pub fn new(backend: Backend, camera: &Camera, config: &PipelineConfig) -> Result<Self> {
         config.validate()?;
         camera.validate()?;
         let ideal = config.ideal(camera)?;
         ideal.validate()?;
         let eye = Eye { raw: camera, ideal: &ideal, mask: config.mask.as_ref(), gyro: config.gyro.is_some() };
-        let (plan, cells, grid) =
-            plan(&config.engine.flow, &config.sphere, eye, config.engine.format, config.fields)?;
+        let PipelineConfig { algorithm, certainty, format, fields, .. } = config;
+        let (mut plan, cells, grid) = plan(algorithm, *certainty, &config.sphere, eye, *format, *fields)?;
+        plan.outputs.retain(|port| config.read_flow || port.name != "flow");
         Ok(Self {
-            engine: Engine::with_plan(backend, plan, &config.engine)?,
+            stream: Stream::new(&backend, plan, &config.stream)?,
             ideal,
             cells,
             gyro: config.gyro.map(Gyro::new).transpose()?,
             last: None,
-            waiting: VecDeque::with_capacity(config.engine.in_flight),
             sectors: Sectors::unknown(grid),
             heading: Heading::UNKNOWN,
             heading_time_s: f64::NAN,
@@ -110,10 +107,10 @@ impl Pipeline {
         self.given = heading;
     }
 
-    /// Takes a frame and the time of the middle of its exposure, in the camera's clock. See [`Engine::submit`].
+    /// Takes a frame and the time of the middle of its exposure, in the camera's clock. See [`Stream::submit`].
     ///
     /// # Errors
-    /// As [`Engine::submit`].
+    /// As [`Stream::submit`].
     pub fn submit(&mut self, frame: &Frame<'_>, time_s: f64) -> Result<Ticket> {
         let before = self.last;
         let digest = digest(frame);
@@ -127,56 +124,46 @@ impl Pipeline {
             (frozen, fault) => fault.or(frozen.map(|_| Invalid::Frozen)),
         };
         if let Some(Invalid::Interval { .. }) = fault {
-            self.engine.reset();
+            self.stream.reset();
         }
         let heading = self.given.unwrap_or_else(|| self.turned_heading(time_s));
         let motion = Motion { prev_from_cur: turn.unwrap_or(DMat3::IDENTITY), heading };
-        let extras = Extras { motion: Some(&motion), ..Extras::default() };
-        let submitted = Instant::now();
-        let ticket = self.engine.submit_with(frame, &extras)?;
-        // What comes after is to be held against when the picture was new.
+        let motion = motion.values();
+        let given = [("frame", Some(Value::Frame(frame))), ("motion", Some(Value::Raw(&motion)))];
+        let ticket = self.stream.submit(&given, Submitted { time_s, before, turn, fault })?;
+        // What comes after is compared with when the picture was new.
         let taken_s = frozen.map_or(time_s, |before| before.time_s);
         self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, given_s: time_s, digest });
-        // What was never waited for is forgotten, oldest first.
-        if self.waiting.len() == self.config.engine.in_flight {
-            self.waiting.pop_front();
-        }
-        self.waiting.push_back(Waiting { frame: ticket.frame(), time_s, before, turn, fault, submitted });
         Ok(ticket)
     }
 
-    /// Whether a frame is done. See [`Engine::poll`].
+    /// Whether a frame is done. See [`Stream::poll`].
     ///
     /// # Errors
-    /// As [`Engine::poll`].
+    /// As [`Stream::poll`].
     pub fn poll(&mut self, ticket: &Ticket) -> Result<bool> {
-        self.engine.poll(ticket)
+        self.stream.poll(ticket)
     }
 
     /// Waits for a frame. Frames are to be waited for in the order in which they were submitted: what one tells of the
     /// heading is used for the next.
     ///
     /// # Errors
-    /// As [`Engine::wait`].
+    /// As [`Stream::wait`].
     pub fn wait(&mut self, ticket: Ticket) -> Result<Cue<'_>> {
-        let Self {
-            engine, config, sectors, headings, alarms, waiting, given, heading, heading_time_s, ..
-        } = self;
-        let output = engine.wait(ticket)?;
-        let place = waiting.iter().position(|waiting| waiting.frame == ticket.frame());
-        let frame = place.and_then(|place| waiting.remove(place));
-        let Some(frame) = frame else { return Err(Error::Ticket { ticket: ticket.frame() }) };
+        let Self { stream, config, sectors, headings, alarms, given, heading, heading_time_s, .. } = self;
+        let done = stream.wait(ticket)?;
+        let frame = done.payload;
         let interval_s = frame.interval_s();
-        let previous = output.map(|output| output.previous);
-        let lost = previous != frame.before.map(|before| before.frame);
+        let lost = done.previous != frame.before.map(|before| before.frame);
         let mut invalid = frame.fault.or(lost.then_some(Invalid::Lost));
-        let (mut flow, mut fields, mut threat): (_, &[Vec<f32>], _) = (None, &[], None);
+        let (mut outputs, mut threat) = (None, None);
         let mut remaining_turn_rad_s = None;
-        let pair = output.and_then(|output| Some((output, output.fields.split_first()?, interval_s?)));
+        let pair = done.outputs.and_then(|found| Some((found, found.raw("sectors")?, interval_s?)));
         match pair {
-            Some((output, (summed, rest), interval_s)) if !lost => {
+            Some((found, summed, interval_s)) if !lost => {
                 sectors.read(summed, interval_s);
-                (flow, fields) = (output.flow, rest);
+                outputs = Some(found);
                 let coverage = sectors.coverage();
                 let least = config.least_coverage;
                 invalid = invalid
@@ -200,7 +187,7 @@ impl Pipeline {
             }
         }
         Ok(Cue {
-            frame: frame.frame,
+            frame: done.frame,
             time_s: frame.time_s,
             interval_s,
             invalid,
@@ -209,19 +196,21 @@ impl Pipeline {
             heading: *heading,
             sectors,
             threat,
-            flow,
-            fields,
-            latency: frame.submitted.elapsed(),
+            flow: outputs.and_then(|outputs| outputs.flow("flow")),
+            looming: outputs.and_then(|outputs| outputs.raw("looming")),
+            cells: outputs.and_then(|outputs| outputs.raw("cells")),
+            tangent: outputs.and_then(|outputs| outputs.raw("tangent")),
+            latency: done.latency,
         })
     }
 
     /// Submits a frame and waits for it.
     ///
     /// # Errors
-    /// As [`Engine::process`].
+    /// As [`Stream::process`].
     pub fn process(&mut self, frame: &Frame<'_>, time_s: f64) -> Result<Cue<'_>> {
         let ticket = self.submit(frame, time_s)?;
-        self.engine.finish(ticket)?;
+        self.stream.finish(ticket)?;
         self.wait(ticket)
     }
 
@@ -254,16 +243,36 @@ impl Pipeline {
 
     /// Begins anew: the next frame is a first frame, and nothing is known of the heading.
     pub fn reset(&mut self) {
-        self.engine.reset();
+        self.stream.reset();
         self.last = None;
         self.heading = Heading::UNKNOWN;
         self.headings.reset();
         self.alarms.reset();
     }
 
-    /// The engine that computes: its adapter, latencies and counts.
-    pub fn engine(&self) -> &Engine {
-        &self.engine
+    /// What was counted.
+    pub fn stats(&self) -> Stats {
+        self.stream.stats()
+    }
+
+    /// What computes: the adapter's name, or the CPU and its threads.
+    pub fn adapter(&self) -> String {
+        self.stream.adapter()
+    }
+
+    /// The device in use, if it is a GPU; after a loss it is another one than before.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.stream.gpu()
+    }
+
+    /// The latencies of the last frames that gave a result.
+    pub fn latency(&self) -> Latency {
+        self.stream.latency()
+    }
+
+    /// What is computed of a frame.
+    pub fn plan(&self) -> &Plan {
+        self.stream.plan()
     }
 
     /// The pinhole whose pictures the flow is computed of.

@@ -248,7 +248,9 @@ mod tests {
             sectors,
             threat: None,
             flow: Some(flow),
-            fields: &[],
+            looming: None,
+            cells: None,
+            tangent: None,
             latency: Duration::ZERO,
         }
     }

@@ -4,9 +4,10 @@ use super::config::Sphere;
 use super::grid::{Cells, Grid};
 use super::plan::Fields;
 use crate::camera::Camera;
+use crate::flow::Evidence;
 use crate::frame::Size;
-use crate::kernels::{cells, looming, sectors, tangent, trust};
-use crate::plan::{BufId, Bufs, Shape, Step};
+use crate::kernels::{cell_mean, cells, looming, sectors, tangent, trust};
+use crate::plan::{BufId, Bufs, Port, PortKind, Shape, Step};
 
 /// From the flow to the sectors.
 pub(super) struct Back<'a> {
@@ -55,18 +56,23 @@ impl<'a> Back<'a> {
         }
     }
 
-    pub(super) fn fields(&self) -> Vec<(BufId, Shape)> {
-        let when = |wanted: bool, field| wanted.then_some(field);
-        let beside =
-            [when(self.wanted.looming, self.looming), when(self.wanted.cells, self.cells), self.tangent];
-        std::iter::once(self.sectors).chain(beside.into_iter().flatten()).collect()
+    /// What is read of a pair, but for the flow.
+    pub(super) fn outputs(&self) -> Vec<Port> {
+        let port = |name: &'static str, (buf, shape): (BufId, Shape)| {
+            Port::output(name, PortKind::Raw { len: shape.len() }, buf)
+        };
+        let mut outputs = vec![port("sectors", self.sectors)];
+        outputs.extend(self.wanted.looming.then(|| port("looming", self.looming)));
+        outputs.extend(self.wanted.cells.then(|| port("cells", self.cells)));
+        outputs.extend(self.tangent.map(|tangent| port("tangent", tangent)));
+        outputs
     }
 
     /// `turn` is what the flow still holds of the camera's turn, `motion` what is known of the heading.
     pub(super) fn steps(
         &self,
         steps: &mut Vec<Step>,
-        expansions: [BufId; 4],
+        evidence: Evidence,
         certainty: [BufId; 2],
         flow: BufId,
         [turn, motion]: [BufId; 2],
@@ -77,14 +83,23 @@ impl<'a> Back<'a> {
         if let Some(tangent) = self.tangent {
             steps.push(Step::new(&tangent::KERNEL, "sphere", pinhole(self.ideal), &[flow, turn], &[tangent]));
         }
-        let [quad_0, cross_0, quad_1, cross_1] = expansions;
-        steps.push(Step::new(
-            &trust::KERNEL,
-            "sphere",
-            trust::Params { columns, rows, width, height, cell, step },
-            &[quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow],
-            &[(self.trust, Shape::planar(self.cells_at.size, 1))],
-        ));
+        let trust = [(self.trust, Shape::planar(self.cells_at.size, 1))];
+        steps.push(match evidence {
+            Evidence::Expansions([quad_0, cross_0, quad_1, cross_1]) => Step::new(
+                &trust::KERNEL,
+                "sphere",
+                trust::Params { columns, rows, width, height, cell, step },
+                &[quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow],
+                &trust,
+            ),
+            Evidence::Confidence(plane) => Step::new(
+                &cell_mean::KERNEL,
+                "sphere",
+                cell_mean::Params { columns, rows, width, height, cell, step },
+                &[plane, certainty[0]],
+                &trust,
+            ),
+        });
         let tangent::Params { focal, centre, .. } = pinhole(self.ideal);
         steps.push(Step::new(
             &cells::KERNEL,

@@ -5,9 +5,9 @@ use super::motion::MOTION_LEN;
 use super::plan::Eye;
 use crate::camera::Lens;
 use crate::flow::gray_step;
-use crate::frame::{PixelFormat, Plane};
-use crate::kernels::{lens_map, luma, remap};
-use crate::plan::{BufId, Bufs, Shape, Step};
+use crate::frame::PixelFormat;
+use crate::kernels::{lens_map, remap};
+use crate::plan::{BufId, Bufs, PortKind, Shape, Step, pack};
 
 /// Where the pictures come from, in the ideal camera's geometry.
 pub(super) struct Front<'a> {
@@ -53,7 +53,7 @@ impl<'a> Front<'a> {
         let undistort = (!plain).then(|| map(bufs, "undistortion"));
         Self {
             eye,
-            frame: bufs.input("frame", luma::row_words(raw, format) * raw.height as usize),
+            frame: bufs.input("frame", PortKind::Frame { size: raw, format }.len()),
             raw: [first, second],
             gray: if plain && !turns { first } else { bufs.computed("gray", Shape::planar(ideal, 1)) },
             certainty: match undistort {
@@ -61,7 +61,7 @@ impl<'a> Front<'a> {
                 None => bufs.constant("equal certainty", vec![1.0; Shape::planar(ideal, 1).len()]),
             },
             mask: (undistort.is_some() || turns).then(|| {
-                let mask = eye.mask.map(padded).unwrap_or_else(|| vec![1.0; Shape::planar(raw, 1).len()]);
+                let mask = eye.mask.map_or_else(|| vec![1.0; Shape::planar(raw, 1).len()], pack::share);
                 bufs.constant("mask", mask)
             }),
             map: undistort,
@@ -118,15 +118,4 @@ impl<'a> Front<'a> {
         ));
         self.gray
     }
-}
-
-/// A plane as a plan's buffer holds it.
-pub(super) fn padded(plane: &Plane) -> Vec<f32> {
-    let (width, stride) = (plane.size.width as usize, plane.size.stride());
-    let held = |value: f32| if value > 0.0 { value.min(1.0) } else { 0.0 };
-    plane
-        .data
-        .chunks_exact(width)
-        .flat_map(|row| (0..stride).map(move |x| held(row[x.min(width - 1)])))
-        .collect()
 }

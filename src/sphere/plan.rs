@@ -7,10 +7,11 @@ use super::grid::{Cells, Grid};
 use super::motion::MOTION_LEN;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
-use crate::flow::{Farneback, Parts};
+use crate::flow::{Algorithm, Wanted};
 use crate::frame::{PixelFormat, Plane};
 use crate::kernels::prime;
-use crate::plan::{BufId, Bufs, Plan, Shape, Step};
+use crate::plan::{BufId, Bufs, Fill, Plan, Port, PortKind, Shape, Step};
+use crate::sphere::Motion;
 
 /// What there is to look through.
 #[derive(Clone, Copy, Debug)]
@@ -39,19 +40,23 @@ pub struct Fields {
 
 /// The plan for frames of this format, and the cells and sectors it sums the flow up in.
 ///
+/// Its inputs are `frame` and `motion`; its outputs are `sectors`, `flow` (from the current frame back to the previous one)
+/// and the [`Fields`] that are asked for. With `certainty`, what the frame does not show and what the mask hides is left
+/// out of the estimator's neighbourhoods.
+///
 /// # Errors
 /// [`Error::Parameter`] for a parameter that is out of range, [`Error::SizeMismatch`] for a mask of another size.
 pub(crate) fn plan(
-    flow: &Farneback,
+    algorithm: &Algorithm,
+    certainty: bool,
     view: &Sphere,
     eye: Eye<'_>,
     format: PixelFormat,
     fields: Fields,
 ) -> Result<(Plan, Cells, Grid)> {
     view.validate()?;
+    algorithm.validate()?;
     let primed = eye.gyro && view.derotation == Derotation::Primed;
-    let flow = Farneback { initial_flow: primed, confidence: false, ..flow.clone() };
-    flow.validate()?;
     let size = eye.ideal.size;
     size.validate()?;
     eye.raw.size.validate()?;
@@ -73,13 +78,14 @@ pub(crate) fn plan(
     let motion = bufs.input("motion", MOTION_LEN);
     let found = bufs.computed("flow", Shape::planar(size, 2));
     let prime = primed.then(|| bufs.computed("flow of the turn", Shape::planar(size, 2)));
-    let parts = Parts::new(&mut bufs, &flow, size);
+    let wanted = Wanted { initial_flow: primed, certainty, confidence: false, evidence: true };
+    let stages = algorithm.stages(&mut bufs, size, wanted);
     let back = Back::new(&mut bufs, view, eye.ideal, &cells, &grid, fields);
 
     let expand = |steps: &mut Vec<Step>, parity: usize, map: Option<Map>, slot: usize, label: &str| {
         let gray = front.picture(steps, parity, map, label);
-        let certainty = map.map_or(front.certainty, |map| map.certainty);
-        steps.extend(parts.expand(gray, flow.certainty.then_some(certainty), slot));
+        let shown = map.map_or(front.certainty, |map| map.certainty);
+        steps.extend(stages.ingest(gray, certainty.then_some(shown), slot));
     };
     let ingest = [0, 1].map(|parity| {
         let mut steps = vec![front.brightness(parity, format)];
@@ -103,27 +109,28 @@ pub(crate) fn plan(
         if let Some(prime) = prime {
             steps.push(prime_step(eye.ideal, motion, prime));
         }
-        steps.extend(parts.flow(slots, prime.unwrap_or(found), found));
-        let [first, second] = slots.map(|slot| parts.finest(slot));
-        let expansions = [first.quad, first.cross_term, second.quad, second.cross_term];
+        steps.extend(stages.pair(slots, prime.unwrap_or(found), found));
+        let evidence = stages.evidence(slots);
         let certainty = [front.certainty, front.turned.map_or(front.certainty, |map| map.certainty)];
         let turn = if front.turned.is_some() { front.still } else { motion };
-        back.steps(&mut steps, expansions, certainty, found, [turn, motion]);
+        back.steps(&mut steps, evidence, certainty, found, [turn, motion]);
         steps
     });
+    let frame_kind = PortKind::Frame { size: eye.raw.size, format };
+    let unknown = Fill::Values(Motion::UNKNOWN.values().to_vec());
+    let mut outputs = back.outputs();
+    outputs.push(Port::output("flow", PortKind::Flow { size }, found));
     let plan = Plan {
         size: eye.raw.size,
-        flow_size: size,
         setup: front.setup(),
         ingest,
         pair,
-        frame: front.frame,
-        certainty: None,
-        motion: Some(motion),
-        flow: [found; 2],
-        initial_flow: false,
-        confidence: None,
-        fields: back.fields(),
+        inputs: vec![
+            Port::new("frame", frame_kind, front.frame, Fill::Required),
+            Port::new("motion", PortKind::Raw { len: MOTION_LEN }, motion, unknown),
+        ],
+        outputs,
+        carried: stages.carried(),
         bufs: bufs.finish(),
     };
     plan.validate()?;

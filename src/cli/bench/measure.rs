@@ -6,13 +6,15 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::copy;
-use crate::engine::{Backend, Config, Engine, TimeSource};
+use crate::backend::Backend;
+use crate::engine::{Config, Engine};
 use crate::error::Result;
 use crate::eval::Scene;
-use crate::flow::Farneback;
+use crate::flow::{self, Algorithm};
 use crate::frame::{Image, Size};
 use crate::plan::{BufId, Plan};
 use crate::quantile::{nearest_rank, sorted};
+use crate::stream::{StreamConfig, TimeSource};
 
 /// Frames of the made-up scene, played forth and back.
 const FRAMES: u32 = 6;
@@ -67,8 +69,8 @@ pub(super) struct KernelFigures {
 }
 
 /// Measures one backend at one size.
-pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u32) -> Result<Figures> {
-    let config = Config { flow: flow.clone(), ..Config::default() };
+pub(super) fn measure(backend: &Backend, size: Size, algorithm: &Algorithm, frames: u32) -> Result<Figures> {
+    let config = Config { algorithm: algorithm.clone(), ..Config::default() };
     let (engine, engine_ms) = timed(|| Engine::new(backend.clone(), size, &config));
     let mut engine = engine?;
     let scene = Scene::new(size)?;
@@ -85,17 +87,19 @@ pub(super) fn measure(backend: &Backend, size: Size, flow: &Farneback, frames: u
     let (name, buffer_bytes) = (engine.adapter(), engine.buffer_bytes());
     drop(engine);
 
+    let values = largest(&flow::plan(algorithm, size, config.format, config.options())?);
     let copy_gb_s = match backend {
-        Backend::Gpu(gpu) => copy::gpu(gpu, largest(&config.flow.plan(size, config.format)?))?,
-        Backend::Cpu => copy::cpu(largest(&config.flow.plan(size, config.format)?)),
+        Backend::Gpu(gpu) => copy::gpu(gpu, values)?,
+        Backend::Cpu => copy::cpu(values),
     };
-    let timed_config = Config { timestamps: true, ..config };
+    let stream = StreamConfig { timestamps: true, ..config.stream.clone() };
+    let timed_config = Config { stream, ..config };
     let mut engine = Engine::new(backend.clone(), size, &timed_config)?;
     let (clock, mut kernels) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     drop(engine);
     // Kernels that only an option uses: once more with all options, for those that are not measured yet.
-    let every_option = Farneback { initial_flow: true, certainty: true, confidence: true, ..flow.clone() };
-    let mut engine = Engine::new(backend.clone(), size, &Config { flow: every_option, ..timed_config })?;
+    let every_option = Config { initial_flow: true, certainty: true, confidence: true, ..timed_config };
+    let mut engine = Engine::new(backend.clone(), size, &every_option)?;
     let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     let known: Vec<&str> = kernels.iter().map(|figures| figures.kernel).collect();
     kernels.extend(optional.into_iter().filter(|figures| !known.contains(&figures.kernel)));
@@ -206,6 +210,7 @@ impl Times {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::flow::{Farneback, FlowOptions};
     use crate::frame::PixelFormat;
 
     #[test]
@@ -219,7 +224,8 @@ mod tests {
     #[test]
     fn moved_bytes_are_those_of_each_level_not_of_the_shared_buffer() {
         let size = Size::new(64, 64);
-        let plan = Farneback { levels: 1, ..Farneback::default() }.plan(size, PixelFormat::Gray8).unwrap();
+        let algorithm = Algorithm::from(Farneback { levels: 1, ..Farneback::default() });
+        let plan = flow::plan(&algorithm, size, PixelFormat::Gray8, FlowOptions::default()).unwrap();
         let moved = moved(&plan);
         // A frame of bytes in, a plane of f32 out.
         assert_eq!(moved["luma"], (1, 64 * 64 * 5));

@@ -9,11 +9,11 @@ mod show;
 use clap::Args;
 
 use self::measure::Figures;
-use super::args::FlowArgs;
 use super::backend::BackendArgs;
+use super::flow_args::FlowArgs;
 use super::{Outcome, print};
 use crate::error::{Error, Result};
-use crate::flow::Farneback;
+use crate::flow::Algorithm;
 use crate::frame::Size;
 
 /// Time a frame and each kernel, on the GPU and on the CPU.
@@ -57,7 +57,7 @@ impl Bench {
         if self.serve {
             return serve::serve(&self.backend).map(|()| Outcome::Done);
         }
-        let config = self.flow.farneback()?;
+        let config = self.flow.algorithm()?;
         if !(2..=100_000).contains(&self.frames) {
             return Err(Error::parameter("--frames", self.frames, "2 to 100000"));
         }
@@ -81,7 +81,7 @@ impl Bench {
         Ok(Outcome::Done)
     }
 
-    fn pipelines(&self, flow: &Farneback) -> Result<Outcome> {
+    fn pipelines(&self, flow: &Algorithm) -> Result<Outcome> {
         let mut results = Vec::new();
         for backend in self.backend.open_all()? {
             for &size in &self.size {

@@ -6,12 +6,13 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::measure::Times;
+use crate::backend::Backend;
 use crate::camera::{Camera, Lens};
 use crate::cli::print::table;
-use crate::engine::{Backend, Config, Engine};
+use crate::engine::{Config, Engine};
 use crate::error::Result;
 use crate::eval::Scene;
-use crate::flow::Farneback;
+use crate::flow::Algorithm;
 use crate::frame::{Image, Size};
 use crate::imu::{GyroConfig, GyroSample};
 use crate::pipeline::{Pipeline, PipelineConfig};
@@ -51,13 +52,13 @@ type Frame<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
 pub(super) fn measure(
     backend: &Backend,
     size: Size,
-    flow: &Farneback,
+    algorithm: &Algorithm,
     frames: u32,
 ) -> Result<PipelineFigures> {
     let scene = Scene::new(size)?;
     let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
     let image = |number: u32| images[(number % FRAMES) as usize].frame();
-    let config = Config { flow: flow.clone(), read_flow: false, ..Config::default() };
+    let config = Config { algorithm: algorithm.clone(), read_flow: false, ..Config::default() };
     let mut stream = Engine::new(backend.clone(), size, &config)?;
     let mut pairs = Engine::new(backend.clone(), size, &config)?;
     let name = stream.adapter();
@@ -80,9 +81,9 @@ pub(super) fn measure(
         ("to sectors, turn taken out before", gyro, Derotation::Before, false),
         ("the same, with certainty", gyro, Derotation::Before, true),
     ] {
-        let flow = Farneback { certainty, ..flow.clone() };
         let config = PipelineConfig {
-            engine: Config { flow, ..config.clone() },
+            algorithm: algorithm.clone(),
+            certainty,
             sphere: Sphere { derotation, ..Sphere::default() },
             gyro,
             ..PipelineConfig::default()

@@ -8,11 +8,12 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::measure::timed;
+use crate::backend::Backend;
 use crate::cli::backend::{BackendArg, BackendArgs};
 use crate::cli::{input, print};
-use crate::engine::{Backend, Config, Engine};
+use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
-use crate::flow::{Farneback, Window};
+use crate::flow::{Algorithm, Farneback, Window};
 use crate::frame::{Frame, PixelFormat, Size, flo};
 use crate::gpu::Gpu;
 
@@ -57,7 +58,7 @@ struct Server<'a> {
     engines: Vec<(Key, Engine)>,
 }
 
-type Key = (BackendArg, Size, PixelFormat, Farneback);
+type Key = (BackendArg, Size, PixelFormat, Algorithm);
 
 /// Answers until standard input ends. What a request gets wrong is in its answer.
 pub(super) fn serve(args: &BackendArgs) -> Result<()> {
@@ -119,7 +120,7 @@ impl Server<'_> {
                     Backend::Gpu(gpu)
                 }
             };
-            let config = Config { flow: key.3.clone(), format: key.2, ..Config::default() };
+            let config = Config { algorithm: key.3.clone(), format: key.2, ..Config::default() };
             if self.engines.len() == MAX_ENGINES {
                 self.engines.remove(0);
             }
@@ -150,13 +151,13 @@ fn run(engine: &mut Engine, [a, b]: &[Frame<'_>; 2], stream: bool) -> Result<f64
 }
 
 impl Params {
-    fn farneback(&self) -> Result<Farneback> {
+    fn farneback(&self) -> Result<Algorithm> {
         let window = match self.window.as_str() {
             "box" => Window::Box,
             "gaussian" => Window::Gaussian,
             other => return Err(Error::parameter("window", other, "box or gaussian")),
         };
-        let flow = Farneback {
+        let flow = Algorithm::from(Farneback {
             pyr_scale: self.pyr_scale,
             levels: self.levels,
             winsize: self.winsize,
@@ -165,7 +166,7 @@ impl Params {
             poly_sigma: self.poly_sigma,
             window,
             ..Farneback::default()
-        };
+        });
         flow.validate()?;
         Ok(flow)
     }

@@ -16,7 +16,7 @@ use super::args::{named_by_flags, whole_within};
 use super::backend::BackendArgs;
 use super::fly::setup::SetupArgs;
 use super::{Outcome, input, print};
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::report::counted;

@@ -7,12 +7,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::FlowArgs;
+use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
 use crate::camera::{Camera, Lens, View};
 use crate::error::{Error, Result};
 use crate::eval::Scene;
-use crate::flow::Farneback;
+use crate::flow::{self, Algorithm, FlowOptions};
 use crate::frame::{Image, Plane, Size};
 use crate::gpu::{Gpu, GpuOptions};
 use crate::plan::Plan;
@@ -62,9 +62,7 @@ pub(super) struct Crosscheck {
 
 impl Crosscheck {
     pub(super) fn run(&self) -> Result<Outcome> {
-        let mut config = self.flow.farneback()?;
-        config.confidence = !self.sphere;
-        config.certainty = self.mask.is_some();
+        let algorithm = self.flow.algorithm()?;
         if !(self.bounds.is_finite() && self.bounds >= 0.0) {
             return Err(Error::parameter("--bounds", self.bounds, "a finite number of 0 or more"));
         }
@@ -73,12 +71,16 @@ impl Crosscheck {
         let gpu = Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true })?;
         print::note(format_args!("checking {}", gpu.adapter()));
         let plan = match self.sphere {
-            true => sphere_plan(&config, &pair[0], certainty.as_ref())?,
-            false => config.plan(pair[0].size, pair[0].format)?,
+            true => sphere_plan(&algorithm, &pair[0], certainty.as_ref())?,
+            false => {
+                let options = FlowOptions {
+                    certainty: certainty.is_some(),
+                    confidence: true,
+                    ..FlowOptions::default()
+                };
+                flow::plan(&algorithm, pair[0].size, pair[0].format, options)?
+            }
         };
-        if !self.sphere && certainty.is_some() && plan.certainty.is_none() {
-            return Err(Error::parameter("--mask", "given", "none: the plan takes no certainty"));
-        }
         let report = run::run(&gpu, &plan, &pair, certainty.as_ref(), self.bounds)?;
         if self.json {
             print::json(&report)?;
@@ -99,12 +101,12 @@ impl Crosscheck {
 }
 
 /// The plan to the sectors, for a wide camera with a lens of the usual barrel distortion.
-fn sphere_plan(flow: &Farneback, image: &Image, mask: Option<&Plane>) -> Result<Plan> {
+fn sphere_plan(algorithm: &Algorithm, image: &Image, mask: Option<&Plane>) -> Result<Plan> {
     let [width, height] = [image.size.width, image.size.height].map(f64::from);
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
     let (f_u, f_v) = (0.53 * width, 0.53 * width);
     let raw = Camera { size: image.size, f_u, f_v, u_0: 0.504 * width, v_0: 0.492 * height, lens };
     let eye = Eye { raw: &raw, ideal: &raw.ideal(image.size, View::CropToValid)?, mask, gyro: true };
     let fields = Fields { tangent: true, ..Fields::default() };
-    Ok(plan(flow, &Sphere::default(), eye, image.format, fields)?.0)
+    Ok(plan(algorithm, mask.is_some(), &Sphere::default(), eye, image.format, fields)?.0)
 }

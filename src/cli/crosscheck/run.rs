@@ -3,16 +3,16 @@
 use glam::{DMat3, DVec3};
 use serde::Serialize;
 
-use crate::cli::buffers::{put_frame, put_plane, take_flow};
-use crate::cpu::CpuExecutor;
+use crate::backend::Backend;
 use crate::error::Result;
 use crate::eval::endpoint_error;
 use crate::frame::{Image, Plane};
-use crate::gpu::{Gpu, GpuExecutor};
+use crate::gpu::Gpu;
 use crate::kernel::Bound;
 use crate::kernels::compare::{Difference, POISON, compare};
-use crate::plan::{BufId, Content, Plan, Shape, Step};
+use crate::plan::{BufId, Content, Given, Outputs, Plan, Shape, Step, Value};
 use crate::quantile::nearest_rank;
+use crate::runner::Runner;
 use crate::sphere::{Heading, Motion};
 
 /// What was found.
@@ -81,9 +81,9 @@ pub(super) struct Worst {
 /// The two executors, and the GPU once more: corrected before every step, and left to itself.
 struct Sides<'a> {
     plan: &'a Plan,
-    cpu: CpuExecutor,
-    corrected: GpuExecutor,
-    alone: GpuExecutor,
+    cpu: Runner,
+    corrected: Runner,
+    alone: Runner,
     /// What bounds are multiplied by.
     factor: f32,
 }
@@ -96,11 +96,12 @@ pub(super) fn run(
     certainty: Option<&Plane>,
     factor: f32,
 ) -> Result<Report> {
+    let backend = Backend::Gpu(gpu.clone());
     let mut sides = Sides {
         plan,
-        cpu: CpuExecutor::new(plan),
-        corrected: GpuExecutor::new(gpu, plan)?,
-        alone: GpuExecutor::new(gpu, plan)?,
+        cpu: Runner::new(&Backend::Cpu, plan.clone())?,
+        corrected: Runner::new(&backend, plan.clone())?,
+        alone: Runner::new(&backend, plan.clone())?,
         factor,
     };
     let mut report = Report {
@@ -113,33 +114,36 @@ pub(super) fn run(
         first_difference: None,
         first_beyond_bound: None,
     };
-    if let (Some(id), Some(plane)) = (plan.certainty, certainty) {
-        put_plane(plane, sides.cpu.buf_mut(id));
-        sides.alone.write(id, sides.cpu.buf(id));
-    }
-    if let Some(motion) = plan.motion {
-        sides.cpu.buf_mut(motion).copy_from_slice(&turn().values());
-        sides.alone.write(motion, sides.cpu.buf(motion));
-    }
     for step in &plan.setup {
         sides.compare(step, "once".to_owned(), &mut report)?;
     }
+    let motion = turn().values();
+    let certainty = certainty.filter(|_| plan.input("certainty").is_some()).map(Value::Plane);
+    let motion = plan.input("motion").map(|_| Value::Raw(&motion));
     for (parity, image) in pair.iter().enumerate() {
-        put_frame(&image.frame()?, sides.cpu.buf_mut(plan.frame));
-        sides.alone.write(plan.frame, sides.cpu.buf(plan.frame));
-        // The first frame has no other before it.
+        let frame = image.frame()?;
+        let given: [Given<'_>; 3] =
+            [("frame", Some(Value::Frame(&frame))), ("certainty", certainty), ("motion", motion)];
+        sides.cpu.set(parity, &given)?;
+        sides.alone.set(parity, &given)?;
+        // The first frame has no previous one.
         let count = if parity == 0 { plan.ingest[0].len() } else { usize::MAX };
         for (index, step) in plan.steps(parity).enumerate().take(count) {
             sides.step(step, parity, index, &mut report)?;
         }
     }
     report.breaches = report.steps.iter().map(|step| step.breaches).sum();
-    let id = plan.flow[1];
-    let expected = take_flow(sides.cpu.buf(id), plan.flow_size);
-    let found = take_flow(&sides.alone.read(id, plan.buf(id).len)?, plan.flow_size);
-    let error = endpoint_error(&expected, &found)?;
-    // Only the figures count here, and no bound.
-    report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, &Bound::default()));
+    let [mut expected, mut found] = [(); 2].map(|()| Outputs::new(&plan.outputs));
+    for (outputs, side) in [(&mut expected, &sides.cpu), (&mut found, &sides.alone)] {
+        for (i, port) in plan.outputs.iter().enumerate() {
+            outputs.unpack(i, &side.read(port.bufs[1], port.kind.len())?);
+        }
+    }
+    if let (Some(expected), Some(found)) = (expected.flow("flow"), found.flow("flow")) {
+        let error = endpoint_error(expected, found)?;
+        // Only the figures count here, and no bound.
+        report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, &Bound::default()));
+    }
     Ok(report)
 }
 
@@ -153,24 +157,26 @@ fn turn() -> Motion {
 impl Sides<'_> {
     fn step(&mut self, step: &Step, parity: usize, index: usize, report: &mut Report) -> Result<()> {
         for &input in &step.inputs {
-            if !matches!(self.plan.buf(input).content, Content::Constant(_)) {
-                self.corrected.write(input, self.cpu.buf(input));
+            let buf = self.plan.buf(input);
+            if !matches!(buf.content, Content::Constant(_)) {
+                self.corrected.write(input, &self.cpu.read(input, buf.len)?);
             }
         }
         // A value that is not written must not pass because it was right before.
         for &(output, shape) in &step.outputs {
-            self.cpu.buf_mut(output)[..shape.len()].fill(POISON);
-            self.corrected.write(output, &self.cpu.buf(output)[..shape.len()]);
+            let poison = vec![POISON; shape.len()];
+            self.cpu.write(output, &poison);
+            self.corrected.write(output, &poison);
         }
-        self.cpu.run(step);
-        self.corrected.run(parity, index)?;
-        self.alone.run(parity, index)?;
+        self.cpu.step(parity, index)?;
+        self.corrected.step(parity, index)?;
+        self.alone.step(parity, index)?;
         self.compare(step, format!("frame {parity}, {}", step.label), report)
     }
 
     /// Holds what a step left on the GPU against what it left on the CPU.
     fn compare(&self, step: &Step, name: String, report: &mut Report) -> Result<()> {
-        let outputs = step.outputs.iter().zip(step.kernel.outputs).zip(self.bounds(step));
+        let outputs = step.outputs.iter().zip(step.kernel.outputs).zip(self.bounds(step)?);
         for ((&(id, shape), &output), bound) in outputs {
             let difference = self.difference(&self.corrected, id, shape, &bound)?;
             let alone = self.difference(&self.alone, id, shape, &bound)?;
@@ -187,17 +193,21 @@ impl Sides<'_> {
     }
 
     /// How far each of the step's outputs may lie off.
-    fn bounds(&self, step: &Step) -> Vec<Bound> {
-        let inputs: Vec<&[f32]> = step.inputs.iter().map(|&id| self.cpu.buf(id)).collect();
-        let expected: Vec<&[f32]> =
-            step.outputs.iter().map(|&(id, shape)| &self.cpu.buf(id)[..shape.len()]).collect();
+    fn bounds(&self, step: &Step) -> Result<Vec<Bound>> {
+        let read = |id: BufId, len: usize| self.cpu.read(id, len);
+        let inputs: Result<Vec<_>> = step.inputs.iter().map(|&id| read(id, self.plan.buf(id).len)).collect();
+        let expected: Result<Vec<_>> =
+            step.outputs.iter().map(|&(id, shape)| read(id, shape.len())).collect();
+        let (inputs, expected) = (inputs?, expected?);
+        let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let expected: Vec<&[f32]> = expected.iter().map(Vec::as_slice).collect();
         let bounds = step.kernel.bounds(&step.params, &inputs, &expected);
-        bounds.into_iter().map(|bound| bound.times(self.factor)).collect()
+        Ok(bounds.into_iter().map(|bound| bound.times(self.factor)).collect())
     }
 
-    fn difference(&self, gpu: &GpuExecutor, id: BufId, shape: Shape, within: &Bound) -> Result<Difference> {
-        let found = gpu.read(id, shape.len())?;
-        Ok(compare(&self.cpu.buf(id)[..shape.len()], &found, within))
+    fn difference(&self, side: &Runner, id: BufId, shape: Shape, within: &Bound) -> Result<Difference> {
+        let (expected, found) = (self.cpu.read(id, shape.len())?, side.read(id, shape.len())?);
+        Ok(compare(&expected, &found, within))
     }
 }
 
@@ -249,6 +259,7 @@ impl From<&Difference> for Spread {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::flow::{self, FlowOptions};
     use crate::frame::{PixelFormat, Size};
     use crate::plan::Shape;
 
@@ -256,7 +267,8 @@ mod tests {
     #[test]
     fn a_breach_is_counted_and_placed() {
         let size = Size::new(5, 3);
-        let plan = crate::flow::Farneback::default().plan(size, PixelFormat::Gray8).unwrap();
+        let options = FlowOptions::default();
+        let plan = flow::plan(&flow::Algorithm::default(), size, PixelFormat::Gray8, options).unwrap();
         let step = &plan.ingest[0][0];
         let shape = Shape::planar(size, 1);
         let expected = vec![1.0; shape.len()];

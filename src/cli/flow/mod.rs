@@ -13,8 +13,8 @@ use self::report::Report;
 use self::source::Source;
 pub(super) use self::targets::gray;
 use self::targets::{FormatArg, Pair, Targets};
-use super::args::FlowArgs;
 use super::backend::BackendArgs;
+use super::flow_args::FlowArgs;
 use super::{Outcome, input};
 use crate::engine::{Config, Engine, Extras};
 use crate::error::{Error, Result};
@@ -95,10 +95,7 @@ struct Given {
 
 impl Flow {
     pub(super) fn run(&self) -> Result<Outcome> {
-        let mut flow = self.flow.farneback()?;
-        flow.initial_flow = self.init.is_some();
-        flow.certainty = self.mask.is_some();
-        flow.confidence = self.confidence.is_some();
+        let algorithm = self.flow.algorithm()?;
         let mut source = Source::open(&self.inputs, self.raw)?;
         let single = self.inputs.len() == 2 && source.len() == Some(2);
         self.check(single)?;
@@ -121,10 +118,12 @@ impl Flow {
             init: self.init.as_ref().map(|path| initial(path, size, first.as_ref())).transpose()?,
         };
         let config = Config {
-            flow,
+            algorithm,
             format: images[0].format,
+            certainty: self.mask.is_some(),
+            confidence: self.confidence.is_some(),
+            initial_flow: self.init.is_some(),
             warm_start: self.warm_start,
-            read_confidence: self.confidence.is_some(),
             ..Config::default()
         };
         let mut engine = Engine::new(self.backend.open()?, size, &config)?;
@@ -182,8 +181,7 @@ fn compute(
     engine.process_with(&first.frame()?, &Extras { certainty, ..Extras::default() })?;
     targets.make_folders()?;
     loop {
-        let output =
-            engine.process_with(&second.frame()?, &Extras { certainty, initial_flow, motion: None })?;
+        let output = engine.process_with(&second.frame()?, &Extras { certainty, initial_flow })?;
         if let Some((flow, output)) = output.and_then(|output| Some((output.flow?, output))) {
             targets.write(report.pairs, &Pair { first: &first, flow, confidence: output.confidence })?;
             report.add(flow);

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::cli::print;
-use crate::engine::Latency;
 use crate::error::Result;
 use crate::frame::{FlowField, Size};
+use crate::stream::Latency;
 
 /// Figures over all pairs.
 #[derive(Debug, Serialize)]

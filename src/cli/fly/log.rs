@@ -98,7 +98,7 @@ pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[Stri
     let size = config.camera.size;
     // What is read back to be drawn and what is only measured are no part of the flight.
     let mut flown = config.clone();
-    flown.pipeline.engine.read_flow = false;
+    flown.pipeline.read_flow = false;
     (flown.measure, flown.pipeline.fields) = (false, Fields::default());
     print::one_line(&Header {
         viewsphere: env!("CARGO_PKG_VERSION"),

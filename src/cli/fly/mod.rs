@@ -22,7 +22,7 @@ use self::video::Video;
 use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::{Outcome, input, print};
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::Result;
 use crate::frame::{Size, remove, write_atomic};
 use crate::report::flight::FlightVideo;
@@ -211,7 +211,7 @@ impl Fly {
             ..self.setup.config()
         };
         // To be drawn: nothing is steered by it.
-        config.pipeline.engine.read_flow = !self.no_video;
+        config.pipeline.read_flow = !self.no_video;
         config
     }
 }

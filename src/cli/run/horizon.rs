@@ -75,7 +75,9 @@ mod tests {
             sectors: &sectors,
             threat: None,
             flow: None,
-            fields: &[],
+            looming: None,
+            cells: None,
+            tangent: None,
             latency: Duration::ZERO,
         };
         let mut horizon = Horizon::new(Some("0,0".parse().unwrap())).unwrap();

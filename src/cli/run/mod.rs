@@ -20,12 +20,11 @@ use self::line::{Line, Timing};
 use self::summary::Summary;
 use self::times::{Rate, Times};
 use self::video::Video;
-use super::args::FlowArgs;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
+use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
 use crate::camera::{self, Camera, Lens};
-use crate::engine::Config;
 use crate::error::{Error, Result};
 use crate::frame::{Image, Size};
 use crate::pipeline::{Cue, Pipeline, PipelineConfig};
@@ -141,9 +140,10 @@ impl Run {
         let lines = self.json || !self.quiet;
         let target = self.overlay.as_ref().map(|path| video::target(path, lines)).transpose()?;
         let horizon = Horizon::new(self.level)?;
-        let PipelineConfig { engine, alarm, .. } = PipelineConfig::default();
+        let PipelineConfig { alarm, .. } = PipelineConfig::default();
         let mut config = PipelineConfig {
-            engine: Config { flow: self.flow.farneback()?, read_flow: target.is_some(), ..engine },
+            algorithm: self.flow.algorithm()?,
+            read_flow: target.is_some(),
             sphere: Sphere {
                 derotation: self.gyro.derotation(),
                 sectors: [self.sectors.width, self.sectors.height],
@@ -176,10 +176,10 @@ impl Run {
             }
             None => self.pinhole(size)?,
         };
-        config.engine.format = format;
+        config.format = format;
         config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
         // What the mask hides must not be seen in the flow beside it.
-        config.engine.flow.certainty = config.mask.is_some();
+        config.certainty = config.mask.is_some();
         let pipeline = Pipeline::new(self.backend.open_unless(self.quiet)?, &camera, &config)?;
         // What it took to get ready is not the frame's age.
         first.there = Instant::now();
@@ -188,8 +188,7 @@ impl Run {
             true => Intake::newest(reader, &first, self.inputs == ["-"]),
             false => Intake::Each(Box::new(reader)),
         };
-        let mut flight =
-            Flight { summary: Summary::new(pipeline.engine().adapter()), pipeline, feed, intake };
+        let mut flight = Flight { summary: Summary::new(pipeline.adapter()), pipeline, feed, intake };
         let mut end = Ok(());
         let written = match target {
             None => {
@@ -204,7 +203,7 @@ impl Run {
             }),
         };
         let Flight { summary, pipeline, intake, .. } = &mut flight;
-        summary.finish(pipeline.engine().latency(), intake.dropped());
+        summary.finish(pipeline.latency(), intake.dropped());
         summary.print(self.json)?;
         end.and(written).map(|()| Outcome::Done)
     }

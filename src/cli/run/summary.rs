@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::line::{KINDS, kind};
 use crate::cli::print;
-use crate::engine::Latency;
 use crate::error::Result;
 use crate::pipeline::Invalid;
 use crate::report::counted;
+use crate::stream::Latency;
 
 /// Figures over all frames.
 #[derive(Debug, Serialize)]

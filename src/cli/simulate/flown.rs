@@ -1,7 +1,7 @@
 //! The flight of a data set.
 
+use crate::backend::Backend;
 use crate::camera::FRD_FROM_CAMERA;
-use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::write_atomic;
 use crate::imu::GyroSample;

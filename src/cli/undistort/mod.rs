@@ -116,9 +116,9 @@ impl Undistort {
             camera::write(path, &out, format)?;
         }
         let Some(place) = &places.output else { return Ok(Outcome::Done) };
-        let resample = Resample::new(self.backend.open()?, &raw, &out)?;
+        let mut resample = Resample::new(&self.backend.open()?, &raw, &out)?;
         let bar = progress(source.len());
-        let done = frames(&resample, &mut source, &mut image, place, &bar);
+        let done = frames(&mut resample, &mut source, &mut image, place, &bar);
         bar.finish_and_clear();
         done?;
         if !matches!(place, Place::Stdout) {
@@ -170,7 +170,7 @@ impl Undistort {
 }
 
 fn frames(
-    resample: &Resample,
+    resample: &mut Resample,
     source: &mut Source,
     image: &mut Image,
     place: &Place,

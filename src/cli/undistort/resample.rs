@@ -1,77 +1,52 @@
 //! A picture as another camera would show it, on either executor.
 
-use glam::DMat3;
-
+use crate::backend::Backend;
 use crate::camera::Camera;
-use crate::engine::Backend;
 use crate::error::Result;
-use crate::frame::{Image, PixelFormat, Size};
-use crate::kernel::Kernel;
+use crate::frame::{Image, PixelFormat, Plane, Size};
 use crate::kernels::{lens_map, remap};
+use crate::plan::{Bufs, Fill, Plan, Port, PortKind, Shape, Step, Value};
+use crate::runner::Runner;
+use crate::sphere::{MOTION_LEN, Motion};
 
-/// The map from one camera's picture to another's, computed once.
+/// The map from one camera's picture to another's, computed once, and what resamples pictures by it.
 pub(super) struct Resample {
-    backend: Backend,
+    runner: Runner,
     raw_size: Size,
     out_size: Size,
-    map: Vec<f32>,
-    certainty: Vec<f32>,
+    certainty: Plane,
 }
 
 impl Resample {
-    pub(super) fn new(backend: Backend, raw: &Camera, out: &Camera) -> Result<Self> {
-        let params = lens_map::Params::new(out, raw);
-        let motion = lens_map::motion(&DMat3::IDENTITY);
-        let mask = vec![1.0; values(raw.size)];
-        let mut resample = Self {
-            backend,
-            raw_size: raw.size,
-            out_size: out.size,
-            map: vec![0.0; 2 * values(out.size)],
-            certainty: vec![0.0; values(out.size)],
-        };
-        let params = bytemuck::bytes_of(&params);
-        let lengths = [2 * values(out.size), values(out.size)];
-        let mut results = resample.run(&lens_map::KERNEL, params, &[&motion, &mask], &lengths)?.into_iter();
-        resample.map = results.next().unwrap_or_default();
-        resample.certainty = results.next().unwrap_or_default();
-        Ok(resample)
+    pub(super) fn new(backend: &Backend, raw: &Camera, out: &Camera) -> Result<Self> {
+        let runner = Runner::new(backend, plan(raw, out)?)?;
+        let values = runner.read(runner.plan().setup[0].outputs[1].0, Shape::planar(out.size, 1).len())?;
+        let mut certainty = Plane { size: out.size, data: vec![0.0; out.size.pixels()] };
+        crate::plan::pack::unpack_plane(&values, out.size, &mut certainty.data);
+        Ok(Self { runner, raw_size: raw.size, out_size: out.size, certainty })
     }
 
     /// Part of the result that the raw picture shows.
     pub(super) fn share(&self) -> f64 {
-        let width = self.out_size.width as usize;
-        let rows = self.certainty.chunks_exact(self.out_size.stride());
-        let sum: f64 = rows.flat_map(|row| &row[..width]).map(|c| f64::from(*c)).sum();
+        let sum: f64 = self.certainty.data.iter().map(|c| f64::from(*c)).sum();
         sum / self.out_size.pixels() as f64
     }
 
     /// The picture as the other camera shows it, in the same format. Outside the raw picture it is black.
-    pub(super) fn apply(&self, image: &Image) -> Result<Image> {
+    pub(super) fn apply(&mut self, image: &Image) -> Result<Image> {
         let (size, format) = (self.out_size, image.format);
-        let params = remap::Params {
-            width: size.width,
-            height: size.height,
-            in_width: self.raw_size.width,
-            in_height: self.raw_size.height,
-        };
         let channels = if format == PixelFormat::Gray16 { 1 } else { format.bytes() };
         let mut data = vec![0; size.pixels() * format.bytes()];
         for channel in 0..channels {
-            let plane = plane(image, channel);
-            let inputs: [&[f32]; 2] = [&plane, &self.map];
-            let results = self.run(&remap::KERNEL, bytemuck::bytes_of(&params), &inputs, &[values(size)])?;
-            let Some(plane) = results.first() else { continue };
+            let plane = Plane { size: self.raw_size, data: channel_of(image, channel) };
+            let outputs = self.runner.run(&[("picture", Some(Value::Plane(&plane)))])?;
+            let found =
+                outputs.plane("resampled").unwrap_or_else(|| unreachable!("the plan has this output"));
             // How opaque a pixel is has nothing to do with how bright.
             let alpha = channel == 3;
-            let rows = plane.chunks_exact(size.stride()).zip(self.certainty.chunks_exact(size.stride()));
-            let found = rows.flat_map(|(row, certainty)| {
-                row.iter()
-                    .zip(certainty)
-                    .take(size.width as usize)
-                    .map(|(v, c)| if alpha { *v } else { v * c })
-            });
-            for (pixel, value) in data.chunks_exact_mut(format.bytes()).zip(found) {
+            let values = found.data.iter().zip(&self.certainty.data);
+            let values = values.map(|(v, c)| if alpha { *v } else { v * c });
+            for (pixel, value) in data.chunks_exact_mut(format.bytes()).zip(values) {
                 match (format, pixel) {
                     (PixelFormat::Gray16, pixel) => {
                         pixel.copy_from_slice(&(value.round() as u16).to_ne_bytes());
@@ -82,46 +57,52 @@ impl Resample {
         }
         Ok(Image { size, format, data })
     }
-
-    fn run(
-        &self,
-        kernel: &Kernel,
-        params: &[u8],
-        inputs: &[&[f32]],
-        outputs: &[usize],
-    ) -> Result<Vec<Vec<f32>>> {
-        match &self.backend {
-            Backend::Gpu(gpu) => {
-                let extent = [self.out_size.width, self.out_size.height];
-                gpu.run_kernel(kernel, params, inputs, outputs, extent)
-            }
-            Backend::Cpu => {
-                let mut results: Vec<Vec<f32>> = outputs.iter().map(|len| vec![0.0; *len]).collect();
-                let mut slices: Vec<&mut [f32]> = results.iter_mut().map(Vec::as_mut_slice).collect();
-                (kernel.reference)(params, inputs, &mut slices);
-                Ok(results)
-            }
-        }
-    }
 }
 
-/// Values of a plane with its rows' surplus.
-fn values(size: Size) -> usize {
-    size.stride() * size.height as usize
+/// The map once, then one channel of a picture through it.
+fn plan(raw: &Camera, out: &Camera) -> Result<Plan> {
+    let (from, to) = (Shape::planar(raw.size, 1), Shape::planar(out.size, 1));
+    let mut bufs = Bufs::default();
+    let picture = bufs.input("picture", from.len());
+    let still = bufs.constant("no turn", Motion::UNKNOWN.values()[..MOTION_LEN].to_vec());
+    let mask = bufs.constant("mask", vec![1.0; from.len()]);
+    let places = bufs.computed("map", Shape::planar(out.size, 2));
+    let certainty = bufs.computed("certainty", to);
+    let resampled = bufs.computed("resampled", to);
+    let map = Step::new(
+        &lens_map::KERNEL,
+        "once",
+        lens_map::Params::new(out, raw),
+        &[still, mask],
+        &[(places, Shape::planar(out.size, 2)), (certainty, to)],
+    );
+    let params = remap::Params {
+        width: out.size.width,
+        height: out.size.height,
+        in_width: raw.size.width,
+        in_height: raw.size.height,
+    };
+    let resample = Step::new(&remap::KERNEL, "picture", params, &[picture, places], &[(resampled, to)]);
+    let input = PortKind::Plane { size: raw.size, range: None };
+    let output = PortKind::Plane { size: out.size, range: None };
+    let mut plan = Plan::single(
+        out.size,
+        bufs.finish(),
+        vec![resample],
+        vec![Port::new("picture", input, picture, Fill::Required)],
+        vec![Port::output("resampled", output, resampled)],
+    );
+    plan.setup = vec![map];
+    plan.validate()?;
+    Ok(plan)
 }
 
-/// One channel of a picture, as the kernels take it.
-fn plane(image: &Image, channel: usize) -> Vec<f32> {
-    let (size, bytes) = (image.size, image.format.bytes());
+/// The values of one channel of a picture.
+fn channel_of(image: &Image, channel: usize) -> Vec<f32> {
+    let bytes = image.format.bytes();
     let value = |pixel: &[u8]| match (image.format, pixel) {
         (PixelFormat::Gray16, &[low, high]) => f32::from(u16::from_ne_bytes([low, high])),
         _ => f32::from(pixel[channel]),
     };
-    let mut plane = Vec::with_capacity(values(size));
-    for row in image.data.chunks_exact(size.width as usize * bytes) {
-        plane.extend(row.chunks_exact(bytes).map(value));
-        let last = plane[plane.len() - 1];
-        plane.resize(plane.len().next_multiple_of(4), last);
-    }
-    plane
+    image.data.chunks_exact(bytes).map(value).collect()
 }

@@ -1,6 +1,6 @@
 //! A frame's expansion where its pixels come with a certainty: by normalised convolution.
 
-use crate::flow::levels::Level;
+use crate::flow::Level;
 use crate::frame::Size;
 use crate::kernels::{certain_expansion_x, certain_expansion_y, weigh};
 use crate::plan::{BufId, Bufs, Shape, Step};

@@ -2,7 +2,7 @@
 
 use super::Farneback;
 use super::certain::Certain;
-use crate::flow::levels::Level;
+use crate::flow::Level;
 use crate::frame::Size;
 use crate::kernels::tables::{self, Applicability};
 use crate::kernels::{binomial, expansion_x, expansion_y, resample_x, resample_y};
@@ -10,11 +10,11 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Where a level's expansion lies: `f(x) ≈ xᵀA x + bᵀx + c`.
 #[derive(Clone, Copy)]
-pub(crate) struct Expansion {
+pub(super) struct Expansion {
     /// b_x, b_y, A_xx, A_yy of each pixel.
-    pub(crate) quad: BufId,
+    pub(super) quad: BufId,
     /// 2 A_xy of each pixel.
-    pub(crate) cross_term: BufId,
+    pub(super) cross_term: BufId,
     /// How certain it is, where frames come with a certainty.
     pub(super) certainty: Option<BufId>,
 }
@@ -46,9 +46,9 @@ struct Reduction {
 }
 
 impl Expansions {
-    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, size: Size, levels: &[Level]) -> Self {
+    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, size: Size, levels: &[Level], certainty: bool) -> Self {
         let applicability = tables::applicability(config.poly_n, config.poly_sigma);
-        let certain = config.certainty.then(|| Certain::new(bufs, size, levels));
+        let certain = certainty.then(|| Certain::new(bufs, size, levels));
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
             let frames = ["even frames", "odd frames"][slot];
             Expansion {

@@ -1,17 +1,18 @@
 //! Pyramidal Farnebäck flow, with OpenCV's semantics to the last border pixel.
 
 mod certain;
+mod displacement;
 mod expansion;
-mod motion;
+mod parameters;
 
-use expansion::{Expansion, Expansions};
-use motion::Motion;
+use displacement::Displacement;
+use expansion::Expansions;
 
+use super::parameter::within;
+use super::{Estimator, Evidence, Stages, Wanted, levels};
 use crate::error::{Error, Result};
-use crate::flow::levels::levels;
-use crate::frame::{PixelFormat, Size};
-use crate::kernels::luma;
-use crate::plan::{BufId, Bufs, Plan, Shape, Step};
+use crate::frame::Size;
+use crate::plan::{BufId, Bufs, Step};
 
 /// The window over which a pixel's neighbours are taken to move alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,13 +75,6 @@ pub struct Farneback {
     pub update: Update,
     /// What happens outside the second frame.
     pub outside: Outside,
-    /// Whether a pair begins with a given flow, or with that of the pair before, in place of none.
-    pub initial_flow: bool,
-    /// Whether each frame comes with a certainty of its pixels, a plane of values from 0 to 1. What lies outside that range
-    /// is held within it, and what is not a number counts as 0.
-    pub certainty: bool,
-    /// Whether a confidence is computed beside the flow.
-    pub confidence: bool,
 }
 
 impl Default for Farneback {
@@ -95,9 +89,6 @@ impl Default for Farneback {
             window: Window::Box,
             update: Update::Flow,
             outside: Outside::First,
-            initial_flow: false,
-            certainty: false,
-            confidence: false,
         }
     }
 }
@@ -125,28 +116,18 @@ impl Farneback {
             ..Self::default()
         }
     }
+}
 
-    /// Checks every parameter's range, and that errors do not grow with the iterations (see [`Update::Increment`]).
-    ///
-    /// # Errors
-    /// [`Error::Parameter`], naming the first one that is out of range.
-    pub fn validate(&self) -> Result<()> {
+impl Estimator for Farneback {
+    fn validate(&self) -> Result<()> {
         if !(self.pyr_scale > 0.0 && self.pyr_scale < 1.0) {
             return Err(Error::parameter("pyr_scale", self.pyr_scale, "a number above 0 and below 1"));
         }
-        if !(0.0..=100.0).contains(&self.poly_sigma) {
-            return Err(Error::parameter("poly_sigma", self.poly_sigma, "0 to 100"));
-        }
-        for (name, value, low, high) in [
-            ("levels", self.levels, 0, 32),
-            ("winsize", self.winsize, 2, 1024),
-            ("iterations", self.iterations, 1, 1000),
-            ("poly_n", self.poly_n, 1, 32),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
-            }
-        }
+        within("poly_sigma", self.poly_sigma, 0.0, 100.0)?;
+        within("levels", self.levels, 0, 32)?;
+        within("winsize", self.winsize, 2, 1024)?;
+        within("iterations", self.iterations, 1, 1000)?;
+        within("poly_n", self.poly_n, 1, 32)?;
         if (self.window, self.update) == (Window::Box, Update::Increment) && self.iterations > 1 {
             let expected = "1 where a box averages increments, as errors grow with each further one, or a Gaussian window";
             return Err(Error::parameter("iterations", self.iterations, expected));
@@ -154,86 +135,36 @@ impl Farneback {
         Ok(())
     }
 
-    /// The plan for frames of this size and format.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for a parameter or size that is out of range.
-    pub fn plan(&self, size: Size, format: PixelFormat) -> Result<Plan> {
-        self.validate()?;
-        size.validate()?;
-        let mut bufs = Bufs::default();
-        let frame = bufs.input("frame", luma::row_words(size, format) * size.height as usize);
-        let gray = bufs.computed("gray", Shape::planar(size, 1));
-        let certainty = self.certainty.then(|| bufs.input("certainty", Shape::planar(size, 1).len()));
-        let first = bufs.computed("flow", Shape::planar(size, 2));
-        let second = if self.initial_flow {
-            bufs.computed("flow of odd frames", Shape::planar(size, 2))
-        } else {
-            first
-        };
-        let flow = [first, second];
-        let parts = Parts::new(&mut bufs, self, size);
-        let plan = Plan {
-            size,
-            flow_size: size,
-            setup: Vec::new(),
-            frame,
-            certainty,
-            motion: None,
-            ingest: [0, 1].map(|parity| {
-                let mut steps = vec![gray_step(size, format, frame, gray)];
-                steps.extend(parts.expand(gray, certainty, parity));
-                steps
-            }),
-            pair: [0, 1].map(|parity| parts.flow([1 - parity, parity], flow[1 - parity], flow[parity])),
-            flow,
-            initial_flow: self.initial_flow,
-            confidence: parts.motion.confidence(),
-            fields: Vec::new(),
-            bufs: bufs.finish(),
-        };
-        plan.validate()?;
-        Ok(plan)
+    fn stages(&self, bufs: &mut Bufs, size: Size, wanted: Wanted) -> Box<dyn Stages> {
+        let levels = levels(size, self.pyr_scale, self.levels);
+        Box::new(FarnebackStages {
+            expansions: Expansions::new(bufs, self, size, &levels, wanted.certainty),
+            displacement: Displacement::new(bufs, self, &levels, wanted),
+        })
     }
 }
 
-/// The brightness of a frame's pixels.
-pub(crate) fn gray_step(size: Size, format: PixelFormat, frame: BufId, gray: BufId) -> Step {
-    let params = luma::Params::new(size, format);
-    Step::new(&luma::KERNEL, "frame", params, &[frame], &[(gray, Shape::planar(size, 1))])
-}
-
-/// The estimator's buffers and the steps that fill them, for plans that do more than flow.
-///
-/// Pictures are expanded into one of two slots, and the flow leads from the picture in one to that in the other.
-pub(crate) struct Parts {
+/// The buffers and steps of the method.
+struct FarnebackStages {
     expansions: Expansions,
-    motion: Motion,
+    displacement: Displacement,
 }
 
-impl Parts {
-    /// Of a configuration and size that are valid.
-    pub(crate) fn new(bufs: &mut Bufs, config: &Farneback, size: Size) -> Self {
-        let levels = levels(size, config.pyr_scale, config.levels);
-        Self {
-            expansions: Expansions::new(bufs, config, size, &levels),
-            motion: Motion::new(bufs, config, &levels),
-        }
-    }
-
-    /// The expansion of a gray picture into a slot. Its certainty is needed if the configuration asks for one.
-    pub(crate) fn expand(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
+impl Stages for FarnebackStages {
+    fn ingest(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
         self.expansions.steps(gray, certainty, slot)
     }
 
-    /// The flow from the picture in the first slot to that in the second. It begins with the given one, if the
-    /// configuration asks for one.
-    pub(crate) fn flow(&self, slots: [usize; 2], given: BufId, flow: BufId) -> Vec<Step> {
-        self.motion.steps(&self.expansions, slots, given, flow)
+    fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+        self.displacement.steps(&self.expansions, slots, initial, flow)
     }
 
-    /// The expansion of the full picture in a slot.
-    pub(crate) fn finest(&self, slot: usize) -> Expansion {
-        self.expansions.levels[0][slot]
+    fn confidence(&self) -> Option<BufId> {
+        self.displacement.confidence()
+    }
+
+    fn evidence(&self, slots: [usize; 2]) -> Evidence {
+        let [first, second] = slots.map(|slot| self.expansions.levels[0][slot]);
+        Evidence::Expansions([first.quad, first.cross_term, second.quad, second.cross_term])
     }
 }

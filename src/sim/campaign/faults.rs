@@ -1,7 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::sim::flight::{Fault, FaultKind};
 

@@ -49,7 +49,7 @@ mod tests {
     /// A configuration in which nothing is left out.
     fn full() -> FlightConfig {
         let mut config = FlightConfig::default();
-        config.pipeline.engine.deadline = Some(Duration::from_millis(7));
+        config.pipeline.stream.deadline = Some(Duration::from_millis(7));
         config.pipeline.ideal = Some(config.camera);
         config.pipeline.mask = Some(Plane { size: Size::new(1, 1), data: vec![0.5] });
         config.pipeline.gyro = Some(GyroConfig::default());

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 use std::fmt;
 
 use super::Faults;
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::Result;
 use crate::frame::Size;
 use crate::sim::CourseKind;

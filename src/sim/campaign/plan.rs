@@ -3,7 +3,7 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use super::{Faults, Job, Setting};
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::sim::CourseKind;

@@ -6,7 +6,7 @@ use std::thread;
 use rayon::ThreadPoolBuilder;
 
 use super::{Ended, Job, JobResult};
-use crate::engine::Backend;
+use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::sim::flight::{FlightConfig, Sensor};
 

@@ -7,8 +7,8 @@ use super::cost::Cost;
 use super::fault::{Fault, FaultKind};
 use super::measure::Measure;
 use super::perception::{Perception, SensorInput};
+use crate::backend::Backend;
 use crate::camera::{Camera, Pose};
-use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat};
 use crate::imu::GyroSample;
@@ -88,7 +88,7 @@ impl CameraSensor {
         let due = faults.iter().filter(due).count();
         if due > self.losses {
             self.losses = due;
-            if let Some(gpu) = self.pipeline.engine().gpu() {
+            if let Some(gpu) = self.pipeline.gpu() {
                 gpu.device().destroy();
             }
         }

@@ -4,9 +4,8 @@ use super::body::Body;
 use super::fault::Fault;
 use super::sensor::{FlowNoise, Sensor};
 use crate::camera::{Camera, Lens};
-use crate::engine;
 use crate::error::{Error, Result, in_ranges};
-use crate::flow::{Farneback, Update, Window};
+use crate::flow::{Algorithm, Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
@@ -73,16 +72,13 @@ impl Default for FlightConfig {
             pipeline: PipelineConfig {
                 // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; of increments a
                 // wide Gaussian a few per cent. One iteration finds what is left of a primed search.
-                engine: engine::Config {
-                    flow: Farneback {
-                        winsize: 21,
-                        iterations: 1,
-                        window: Window::Gaussian,
-                        update: Update::Increment,
-                        ..Farneback::default()
-                    },
-                    ..PipelineConfig::default().engine
-                },
+                algorithm: Algorithm::from(Farneback {
+                    winsize: 21,
+                    iterations: 1,
+                    window: Window::Gaussian,
+                    update: Update::Increment,
+                    ..Farneback::default()
+                }),
                 sphere: Sphere {
                     derotation: Derotation::Primed,
                     heading: HeadingModel::Turning,

@@ -52,7 +52,9 @@ impl Measure {
     /// Compares what the pipeline says of the picture that it was shown. None if it says nothing.
     pub(super) fn compare(&mut self, cue: &Cue<'_>, at: &SensorInput<'_>) -> Option<Measured> {
         let before = std::mem::replace(&mut self.before, self.shown)?;
-        let ([looming, cells, ..], Some(interval_s), None) = (cue.fields, cue.interval_s, cue.invalid) else {
+        let (Some(looming), Some(cells), Some(interval_s), None) =
+            (cue.looming, cue.cells, cue.interval_s, cue.invalid)
+        else {
             return None;
         };
         let pose = self.shown?;
@@ -166,7 +168,6 @@ mod tests {
         // Of which nothing is known.
         let looming = vec![0.0; 4 * 24 * 18];
         let sectors = Sectors::unknown(Grid::over(&ideal, view().sectors).unwrap());
-        let fields = [looming, cells];
         let cue = Cue {
             frame: 1,
             time_s: 1.0,
@@ -178,7 +179,9 @@ mod tests {
             sectors: &sectors,
             threat: None,
             flow: None,
-            fields: &fields,
+            looming: Some(&looming),
+            cells: Some(&cells),
+            tangent: None,
             latency: Duration::ZERO,
         };
         let input = |pose: Pose| SensorInput {

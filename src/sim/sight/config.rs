@@ -19,6 +19,9 @@ impl Default for SightConfig {
 }
 
 impl SightConfig {
+    /// The largest [`SightConfig::blur_poses`].
+    pub const MAX_POSES: usize = 8;
+
     /// Checks every field.
     ///
     /// # Errors
@@ -27,8 +30,12 @@ impl SightConfig {
         if !(0.0..=64.0).contains(&self.noise_levels) {
             return Err(Error::parameter("noise_levels", self.noise_levels, "0 to 64 gray levels"));
         }
-        if !(1..=8).contains(&self.blur_poses) {
-            return Err(Error::parameter("blur_poses", self.blur_poses, "1 to 8"));
+        if !(1..=Self::MAX_POSES).contains(&self.blur_poses) {
+            return Err(Error::parameter(
+                "blur_poses",
+                self.blur_poses,
+                format_args!("1 to {}", Self::MAX_POSES),
+            ));
         }
         if !(self.range_m > 0.0) {
             return Err(Error::parameter("range_m", self.range_m, "above 0 m"));

@@ -22,31 +22,29 @@
 //! ```
 
 mod config;
-mod device;
 mod plan;
 mod scene;
 
 pub use config::SightConfig;
 
-use self::device::Device;
-use self::plan::Ports;
 use self::scene::{Scene, Tiles};
 use super::{RayTable, World};
+use crate::backend::Backend;
 use crate::camera::{Camera, Pose};
-use crate::engine::Backend;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Plane};
 use crate::kernels::sensor;
-use crate::plan::Plan;
+use crate::plan::Value;
+use crate::runner::Runner;
 
 /// A camera in a world.
 pub struct Sight {
     config: SightConfig,
     world: World,
     tiles: Tiles,
-    plan: Plan,
-    ports: Ports,
-    device: Device,
+    sharp: Runner,
+    /// Of several poses; none where an exposure is one pose.
+    exposure: Option<Runner>,
     scenes: Vec<Scene>,
     /// Pixels where the lens shows nothing.
     blind: Vec<bool>,
@@ -68,10 +66,11 @@ impl Sight {
         let rays = RayTable::new(camera)?;
         let size = rays.size();
         let tiles = Tiles::new(&rays);
-        let (plan, ports) = plan::plan(&rays, &tiles, world, config)?;
+        let runner = |poses: usize| Runner::new(&backend, plan::plan(&rays, &tiles, world, config, poses)?);
         let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
         Ok(Self {
-            device: Device::new(backend, &plan)?,
+            sharp: runner(1)?,
+            exposure: (config.blur_poses > 1).then(|| runner(config.blur_poses)).transpose()?,
             scenes: (0..config.blur_poses).map(|_| Scene::new(&tiles, world)).collect(),
             blind: pixels.map(|(x, y)| rays.bearing(x, y).is_none()).collect(),
             image: Image { size, format: PixelFormat::Gray8, data: vec![0; size.pixels()] },
@@ -79,8 +78,6 @@ impl Sight {
             config: config.clone(),
             world: world.clone(),
             tiles,
-            plan,
-            ports,
         })
     }
 
@@ -91,7 +88,7 @@ impl Sight {
     /// [`Error::Parameter`] for a pose that is not finite or not a rotation, or from which the tiles of the picture see
     /// more surfaces than there is room for: 128 a tile on average. [`Error::DeviceLost`] if the device was lost.
     pub fn look(&mut self, pose: &Pose, frame_seed: u64) -> Result<&Image> {
-        self.see(std::slice::from_ref(pose), 0, frame_seed)
+        self.see(std::slice::from_ref(pose), frame_seed)
     }
 
     /// The mean of the pictures from the poses of an exposure, [`SightConfig::blur_poses`] of them in the order of time.
@@ -103,7 +100,7 @@ impl Sight {
         if poses.len() != expected {
             return Err(Error::Length { what: "exposure", found: poses.len(), expected });
         }
-        self.see(poses, 1, frame_seed)
+        self.see(poses, frame_seed)
     }
 
     /// How near the last picture's pixels are, 1/m along the ray of each one's centre: 0 for the sky, NaN where the lens
@@ -113,33 +110,30 @@ impl Sight {
         &self.nearness_per_m
     }
 
-    fn see(&mut self, poses: &[Pose], which: usize, frame_seed: u64) -> Result<&Image> {
-        let Self { config, world, tiles, plan, ports, device, scenes, blind, image, nearness_per_m } = self;
+    fn see(&mut self, poses: &[Pose], frame_seed: u64) -> Result<&Image> {
+        let Self { config, world, tiles, sharp, exposure, scenes, blind, image, nearness_per_m } = self;
         for (scene, pose) in scenes.iter_mut().zip(poses) {
             check(pose)?;
             scene.fill(tiles, world, pose, config.range_m)?;
         }
         let seed = sensor::seed_words(frame_seed);
-        let mut inputs = vec![(ports.seed, seed.as_slice())];
-        for (scene, ids) in scenes.iter().zip(&ports.scenes).take(poses.len()) {
-            inputs.extend([
-                (ids[0], scene.surfaces.as_slice()),
-                (ids[1], &scene.lists),
-                (ids[2], &scene.members),
+        let mut given = vec![("seed", Some(Value::Raw(&seed)))];
+        for (scene, [surfaces, lists, members]) in scenes.iter().zip(plan::POSES).take(poses.len()) {
+            given.extend([
+                (surfaces, Some(Value::Raw(&scene.surfaces))),
+                (lists, Some(Value::Raw(&scene.lists))),
+                (members, Some(Value::Raw(&scene.members))),
             ]);
         }
-        let (width, stride) = (image.size.width as usize, image.size.stride());
-        device.run(plan, ports, which, &inputs, |picture, nearness| {
-            for (row, from) in image.data.chunks_exact_mut(width).zip(picture.chunks_exact(stride)) {
-                row.iter_mut().zip(from).for_each(|(gray, level)| *gray = *level as u8);
-            }
-            let rows = nearness_per_m.data.chunks_exact_mut(width).zip(blind.chunks_exact(width));
-            for ((row, blind), from) in rows.zip(nearness.chunks_exact(stride)) {
-                for ((near, blind), from) in row.iter_mut().zip(blind).zip(from) {
-                    *near = if *blind { f32::NAN } else { *from };
-                }
-            }
-        })?;
+        let runner = exposure.as_mut().filter(|_| poses.len() > 1).unwrap_or(sharp);
+        let outputs = runner.run(&given)?;
+        let (Some(picture), Some(nearness)) = (outputs.plane("picture"), outputs.plane("nearness")) else {
+            unreachable!("the plan has these outputs");
+        };
+        image.data.iter_mut().zip(&picture.data).for_each(|(gray, level)| *gray = *level as u8);
+        for ((near, blind), from) in nearness_per_m.data.iter_mut().zip(blind).zip(&nearness.data) {
+            *near = if *blind { f32::NAN } else { *from };
+        }
         Ok(&self.image)
     }
 }

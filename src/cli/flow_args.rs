@@ -1,0 +1,232 @@
+//! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all algorithms, made from
+//! the estimators' own lists.
+
+use clap::builder::PossibleValue;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+
+use crate::error::{Error, Result};
+use crate::flow::{Algorithm, Choice, Parameter};
+
+const HEADING: &str = "Flow parameters";
+const DEFAULT_PRESET: &str = "default";
+
+/// The algorithm and its parameters, as given.
+#[derive(Clone, Debug)]
+pub(super) struct FlowArgs {
+    algorithm: String,
+    preset: String,
+    /// Names and values of the parameters that were given.
+    parameters: Vec<(&'static str, String)>,
+}
+
+/// A parameter, and the algorithms that have it, each with its default.
+struct Shared {
+    parameter: Parameter,
+    of: Vec<(&'static str, String)>,
+}
+
+impl FlowArgs {
+    /// The parameters, checked.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a preset or a parameter that the algorithm does not have, and for values out of range.
+    pub(super) fn algorithm(&self) -> Result<Algorithm> {
+        let mut algorithm = Algorithm::named(&self.algorithm, &self.preset)?;
+        for (name, value) in &self.parameters {
+            if algorithm.get(name).is_none() {
+                let names: Vec<String> =
+                    algorithm.parameters().iter().map(|parameter| flag(parameter.name)).collect();
+                let found = format_args!("--{}", flag(name));
+                let expected = format_args!("one of --{}", names.join(", --"));
+                return Err(Error::parameter(self.algorithm_parameter(), found, expected));
+            }
+            algorithm.set(name, value)?;
+        }
+        algorithm.validate()?;
+        Ok(algorithm)
+    }
+
+    fn algorithm_parameter(&self) -> &'static str {
+        let known = Algorithm::ALL.iter().find(|(name, _)| *name == self.algorithm);
+        known.map_or("parameter of the algorithm", |(name, _)| name)
+    }
+}
+
+impl FromArgMatches for FlowArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let text = |id: &str| matches.get_one::<String>(id).cloned();
+        let given = |shared: Shared| text(shared.parameter.name).map(|value| (shared.parameter.name, value));
+        Ok(Self {
+            algorithm: text("algorithm").unwrap_or_default(),
+            preset: text("preset").unwrap_or_default(),
+            parameters: shared().into_iter().filter_map(given).collect(),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for FlowArgs {
+    fn augment_args(command: Command) -> Command {
+        let mut presets: Vec<PossibleValue> = Vec::new();
+        for (name, help, of) in all_presets() {
+            let only = if of.len() == Algorithm::ALL.len() {
+                String::new()
+            } else {
+                format!(" ({} only)", of.join(", "))
+            };
+            presets.push(PossibleValue::new(name).help(format!("{help}{only}")));
+        }
+        let command = command
+            .next_help_heading(HEADING)
+            .arg(
+                Arg::new("algorithm")
+                    .long("algorithm")
+                    .value_name("NAME")
+                    .value_parser(values(Algorithm::ALL))
+                    .default_value(Algorithm::ALL[0].0)
+                    .help("How the flow is estimated"),
+            )
+            .arg(
+                Arg::new("preset")
+                    .long("preset")
+                    .value_name("PRESET")
+                    .value_parser(presets)
+                    .default_value(DEFAULT_PRESET)
+                    .help(
+                        "Parameters to begin with; the flags below replace single ones, and their defaults are those of the \
+                         preset default",
+                    ),
+            );
+        shared().into_iter().fold(command, |command, shared| command.arg(shared.arg()))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl Shared {
+    fn arg(self) -> Arg {
+        let Self { parameter, of } = self;
+        let mut defaults: Vec<String> = Vec::new();
+        for (algorithm, value) in &of {
+            let all_alike = of.iter().all(|(_, other)| other == value);
+            defaults.push(if all_alike { value.clone() } else { format!("{value} of {algorithm}") });
+        }
+        defaults.dedup();
+        let only = match of.len() == Algorithm::ALL.len() {
+            true => String::new(),
+            false => format!(", of {}", of.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" and ")),
+        };
+        let arg = Arg::new(parameter.name)
+            .long(flag(parameter.name))
+            .value_name(parameter.value_name)
+            .allow_negative_numbers(true)
+            .help(format!("{}{only} [default: {}]", parameter.help, defaults.join(", ")));
+        match parameter.choices {
+            [] => arg.value_parser(move |text: &str| legible(parameter.name, text)),
+            choices => arg.value_parser(values(choices)).allow_negative_numbers(false),
+        }
+    }
+}
+
+/// The text, if it is a value of the parameter of this name. Ranges are looked at when the algorithm is known.
+fn legible(name: &str, text: &str) -> Result<String> {
+    match algorithms().find(|algorithm| algorithm.get(name).is_some()) {
+        Some(mut algorithm) => algorithm.set(name, text).map(|()| text.to_owned()),
+        None => Ok(text.to_owned()),
+    }
+}
+
+/// The flag of a parameter, without its dashes.
+fn flag(name: &str) -> String {
+    name.replace('_', "-")
+}
+
+fn values(choices: &[Choice]) -> Vec<PossibleValue> {
+    choices.iter().map(|(name, help)| PossibleValue::new(*name).help(*help)).collect()
+}
+
+/// Every algorithm with its default parameters.
+fn algorithms() -> impl Iterator<Item = Algorithm> {
+    Algorithm::ALL.iter().filter_map(|(name, _)| Algorithm::named(name, DEFAULT_PRESET).ok())
+}
+
+/// The parameters of all algorithms, each once.
+fn shared() -> Vec<Shared> {
+    let mut all: Vec<Shared> = Vec::new();
+    for algorithm in algorithms() {
+        for parameter in algorithm.parameters() {
+            let of = (algorithm.name(), algorithm.get(parameter.name).unwrap_or_default());
+            match all.iter_mut().find(|shared| shared.parameter.name == parameter.name) {
+                Some(shared) => shared.of.push(of),
+                None => all.push(Shared { parameter: *parameter, of: vec![of] }),
+            }
+        }
+    }
+    all
+}
+
+/// The presets of all algorithms, each once, with the algorithms that have it.
+fn all_presets() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
+    let mut all: Vec<(&'static str, &'static str, Vec<&'static str>)> = Vec::new();
+    for algorithm in algorithms() {
+        for (name, help) in algorithm.presets() {
+            match all.iter_mut().find(|(known, ..)| known == name) {
+                Some((.., of)) => of.push(algorithm.name()),
+                None => all.push((name, help, vec![algorithm.name()])),
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn parsed(args: &[&str]) -> FlowArgs {
+        let command = FlowArgs::augment_args(Command::new("flow"));
+        let matches = command.try_get_matches_from([&["flow"], args].concat()).unwrap();
+        FlowArgs::from_arg_matches(&matches).unwrap()
+    }
+
+    #[test]
+    fn the_help_tells_the_default_of_every_parameter() {
+        let command = FlowArgs::augment_args(Command::new("flow"));
+        for algorithm in algorithms() {
+            for Parameter { name, .. } in algorithm.parameters() {
+                let argument = command.get_arguments().find(|argument| argument.get_id() == name).unwrap();
+                let help = argument.get_help().unwrap().to_string();
+                let defaults = help.rsplit_once("[default: ").unwrap().1;
+                assert!(defaults.contains(&algorithm.get(name).unwrap()), "{name}: {help}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_parameter_can_be_read_and_set_by_name() {
+        for algorithm in algorithms() {
+            for Parameter { name, .. } in algorithm.parameters() {
+                let mut copy = algorithm.clone();
+                copy.set(name, &algorithm.get(name).unwrap()).unwrap();
+                assert_eq!(copy, algorithm, "{name}");
+                assert!(copy.set(name, "neither number nor name").is_err(), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_preset_is_begun_with_and_single_parameters_replace_its_own() {
+        let algorithm = parsed(&["--preset", "accurate", "--poly-n", "7"]).algorithm().unwrap();
+        assert_eq!(algorithm.get("poly_n").unwrap(), "7");
+        assert_eq!(algorithm.get("iterations").unwrap(), "10");
+        let error = parsed(&["--levels", "99"]).algorithm().unwrap_err();
+        assert_eq!(error.to_string(), "levels is 99, expected 0 to 32");
+    }
+}

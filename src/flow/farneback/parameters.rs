@@ -1,0 +1,110 @@
+//! Farnebäck's parameters by their names.
+
+use super::{Farneback, Outside, Update, Window};
+use crate::error::Result;
+use crate::flow::parameter::{Choice, Parameter, Parameters, choice_name, choose, read, wrong};
+
+const WINDOWS: [(&str, Window); 2] = [("box", Window::Box), ("gaussian", Window::Gaussian)];
+const UPDATES: [(&str, Update); 2] = [("flow", Update::Flow), ("increment", Update::Increment)];
+const OUTSIDES: [(&str, Outside); 2] = [("first", Outside::First), ("nothing", Outside::Nothing)];
+
+const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
+    Parameter { name, value_name, help, choices: &[] }
+}
+
+const fn choice(name: &'static str, help: &'static str, choices: &'static [Choice]) -> Parameter {
+    Parameter { name, value_name: "NAME", help, choices }
+}
+
+impl Parameters for Farneback {
+    const NAME: &'static str = "farneback";
+    const ABOUT: &'static str = "polynomial expansions, as OpenCV's calcOpticalFlowFarneback";
+    const LIST: &'static [Parameter] = &[
+        number("pyr_scale", "RATIO", "A level's size against the next finer one, above 0 and below 1"),
+        number("levels", "N", "Levels beside the full picture, 0 to 32"),
+        number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
+        number("iterations", "N", "Iterations on each level, 1 to 1000"),
+        number("poly_n", "PX", "Radius of the polynomial expansion in pixels, 1 to 32"),
+        number(
+            "poly_sigma",
+            "PX",
+            "Standard deviation of the expansion's Gaussian in pixels, 0 to 100; 0 is 0.3 × poly-n",
+        ),
+        choice(
+            "window",
+            "Shape of the averaging window",
+            &[("box", "All neighbours count the same"), ("gaussian", "Near neighbours count more")],
+        ),
+        choice(
+            "update",
+            "What the window averages in each iteration",
+            &[
+                ("flow", "The flow, as OpenCV does"),
+                (
+                    "increment",
+                    "What is added to the flow so far: finer detail from a wider window. Takes a Gaussian window, or one \
+                     iteration",
+                ),
+            ],
+        ),
+        choice(
+            "outside",
+            "What a pixel counts for where the flow leads out of the second picture",
+            &[
+                ("first", "The first picture stands alone there, as in OpenCV"),
+                ("nothing", "Nothing: the window's other pixels decide"),
+            ],
+        ),
+    ];
+    const PRESETS: &'static [Choice] = &[
+        ("fast", "Half the default's work: 1 iteration, winsize 13"),
+        ("default", "3 iterations, winsize 15, 3 levels"),
+        ("accurate", "Three times the default's work: 10 iterations, winsize 13, 5 levels, poly-sigma 1.1"),
+        (
+            "increment",
+            "Half the default's work and less error, except where there is no texture (as in a sky): 1 iteration of \
+             increments, Gaussian winsize 31, nothing from outside the picture",
+        ),
+    ];
+
+    fn preset(name: &str) -> Option<Self> {
+        match name {
+            "default" => Some(Self::default()),
+            "fast" => Some(Self::fast()),
+            "accurate" => Some(Self::accurate()),
+            "increment" => Some(Self::increment()),
+            _ => None,
+        }
+    }
+
+    fn get(&self, name: &str) -> Option<String> {
+        Some(match name {
+            "pyr_scale" => self.pyr_scale.to_string(),
+            "levels" => self.levels.to_string(),
+            "winsize" => self.winsize.to_string(),
+            "iterations" => self.iterations.to_string(),
+            "poly_n" => self.poly_n.to_string(),
+            "poly_sigma" => self.poly_sigma.to_string(),
+            "window" => choice_name(&WINDOWS, self.window).to_owned(),
+            "update" => choice_name(&UPDATES, self.update).to_owned(),
+            "outside" => choice_name(&OUTSIDES, self.outside).to_owned(),
+            _ => return None,
+        })
+    }
+
+    fn set(&mut self, name: &str, value: &str) -> Result<()> {
+        match name {
+            "pyr_scale" => self.pyr_scale = read(Self::LIST, name, value)?,
+            "levels" => self.levels = read(Self::LIST, name, value)?,
+            "winsize" => self.winsize = read(Self::LIST, name, value)?,
+            "iterations" => self.iterations = read(Self::LIST, name, value)?,
+            "poly_n" => self.poly_n = read(Self::LIST, name, value)?,
+            "poly_sigma" => self.poly_sigma = read(Self::LIST, name, value)?,
+            "window" => self.window = choose(Self::LIST, &WINDOWS, name, value)?,
+            "update" => self.update = choose(Self::LIST, &UPDATES, name, value)?,
+            "outside" => self.outside = choose(Self::LIST, &OUTSIDES, name, value)?,
+            _ => return Err(wrong(Self::LIST, name, value)),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,83 @@
+//! What a program leaves that is stopped in the middle.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// A second of flight.
+const YARD: &str = r#"{
+  "format": "viewsphere course", "version": 1, "name": "yard", "seed": 5,
+  "start_ned_m": [0, 0, -10], "length_m": 12, "altitude_m": [2, 30],
+  "surfaces": [{"kind": "ground"}]
+}"#;
+
+/// What is in a folder; nothing where there is none.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = folder.read_dir().into_iter().flatten();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Whether it holds a part of a video.
+fn has_part(names: &[String]) -> bool {
+    names.iter().any(|name| name.starts_with(".flight.y4m.") && name.ends_with(".tmp"))
+}
+
+/// Begins a flight into the folder `a`.
+fn fly(folder: &Path, args: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
+    command.args(["fly", "--sensor", "depth", "--quiet", "-o", "a"]).args(args).current_dir(folder);
+    command.stdout(Stdio::null()).spawn().unwrap()
+}
+
+/// A long flight whose video has begun.
+fn begun(folder: &Path) -> Child {
+    let mut flight = fly(folder, &["--world", "forest:length=1000"]);
+    let since = Instant::now();
+    while !has_part(&names(&folder.join("a"))) {
+        assert!(since.elapsed().as_secs() < 60 && flight.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(5));
+    }
+    flight
+}
+
+/// A short flight into the same folder.
+fn next(folder: &Path, more: &[&str]) -> Vec<String> {
+    fs::write(folder.join("yard.json"), YARD).unwrap();
+    let mut flight = fly(folder, &[&["--world-file", "yard.json"], more].concat());
+    assert_eq!(flight.wait().unwrap().code(), Some(0));
+    names(&folder.join("a"))
+}
+
+#[test]
+fn what_a_killed_flight_has_left_goes_with_the_next_one() {
+    for more in [&[][..], &["--no-video"]] {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let mut killed = begun(folder);
+        // While it is flown the part of its video stays.
+        assert!(has_part(&next(folder, more)));
+        killed.kill().unwrap();
+        killed.wait().unwrap();
+        let video: &[&str] = if more.is_empty() { &["flight.y4m"] } else { &[] };
+        let all = [&["flight.jsonl"], video, &["report.html", "timing.json"]].concat();
+        assert_eq!(next(folder, more), all);
+    }
+}
+
+#[test]
+fn a_flight_that_is_stopped_leaves_nothing() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut stopped = begun(folder.path());
+        let sent = Command::new("kill").args([signal, &stopped.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        assert_eq!(stopped.wait().unwrap().code(), Some(130), "{signal}");
+        assert_eq!(names(&folder.path().join("a")), [""; 0], "{signal}");
+    }
+}

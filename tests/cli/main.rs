@@ -1,0 +1,16 @@
+//! The program as its users run it: what it writes, what it says, and how it ends.
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+mod campaign;
+mod commands;
+mod errors;
+mod feed;
+mod fly;
+mod interrupted;
+#[path = "../common/need.rs"]
+mod need;
+mod program;
+mod report;
+mod run;
+mod simulate;
+mod undistort;

@@ -1,0 +1,25 @@
+//! From files and frames to flow: readers, cameras, gyros, fields against OpenCV's and the truth, the engine, the
+//! pipeline on recorded flights, and steering.
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+mod atomic;
+mod camera;
+mod certainty;
+mod confidence;
+#[path = "../common/data.rs"]
+mod data;
+mod determinism;
+mod engine;
+mod euroc;
+mod imu;
+mod increments;
+#[path = "../common/need.rs"]
+mod need;
+mod opencv_fields;
+mod pair;
+mod public_pairs;
+#[path = "../common/quantile.rs"]
+mod quantile;
+mod readers;
+mod robot;
+mod steer;

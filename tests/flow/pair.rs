@@ -1,0 +1,90 @@
+//! The flow of one pair of pictures, on either executor.
+
+use viewsphere::Backend;
+use viewsphere::flow::{self, Algorithm, FlowOptions, Initial};
+use viewsphere::frame::{FlowField, Image, Plane};
+use viewsphere::gpu::Gpu;
+use viewsphere::kernels::compare::POISON;
+use viewsphere::plan::{Content, Value};
+use viewsphere::runner::Runner;
+
+/// What runs a plan.
+#[derive(Clone, Copy)]
+pub(crate) enum On<'a> {
+    Cpu,
+    Gpu(&'a Gpu),
+}
+
+impl On<'_> {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "CPU",
+            Self::Gpu(_) => "GPU",
+        }
+    }
+
+    fn backend(self) -> Backend {
+        match self {
+            Self::Cpu => Backend::Cpu,
+            Self::Gpu(gpu) => Backend::Gpu(gpu.clone()),
+        }
+    }
+}
+
+/// What comes with the pictures.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Beside<'a> {
+    pub(crate) initial_flow: Option<&'a FlowField>,
+    /// Of each picture.
+    pub(crate) certainty: Option<[&'a Plane; 2]>,
+}
+
+/// The flow from the first picture to the second.
+pub(crate) fn flow(
+    on: On<'_>,
+    algorithm: impl Into<Algorithm>,
+    images: [&Image; 2],
+    initial_flow: Option<&FlowField>,
+) -> FlowField {
+    flow_with(on, algorithm, images, Beside { initial_flow, certainty: None })
+}
+
+/// The flow from the first picture to the second, with what comes beside them.
+///
+/// Everything that the plan computes is poisoned first, so that a step that reads what none has written shows.
+pub(crate) fn flow_with(
+    on: On<'_>,
+    algorithm: impl Into<Algorithm>,
+    images: [&Image; 2],
+    beside: Beside<'_>,
+) -> FlowField {
+    let Beside { initial_flow, certainty } = beside;
+    let options = FlowOptions {
+        initial: if initial_flow.is_some() { Initial::Given } else { Initial::Zero },
+        certainty: certainty.is_some(),
+        confidence: false,
+    };
+    let plan = flow::plan(&algorithm.into(), images[0].size, images[0].format, options)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let steps = [0, 1].into_iter().flat_map(|parity| plan.steps(parity));
+    let outputs = steps.flat_map(|step| step.outputs.iter().map(|(id, _)| *id));
+    let computed: Vec<_> = outputs.filter(|id| plan.buf(*id).content == Content::Computed).collect();
+    let mut runner = Runner::new(&on.backend(), plan).unwrap_or_else(|error| panic!("{error}"));
+    for id in computed {
+        let len = runner.plan().buf(id).len;
+        runner.write(id, &vec![POISON; len]);
+    }
+    for parity in [0, 1] {
+        let frame = images[parity].frame().unwrap_or_else(|error| panic!("{error}"));
+        let given = [
+            ("frame", Some(Value::Frame(&frame))),
+            ("certainty", certainty.map(|planes| Value::Plane(planes[parity]))),
+            ("initial_flow", initial_flow.map(Value::Flow)),
+        ];
+        let outputs = runner.frame(parity, parity == 1, &given).unwrap_or_else(|error| panic!("{error}"));
+        if parity == 1 {
+            return outputs.flow("flow").expect("the plan has this output").clone();
+        }
+    }
+    unreachable!("the second frame makes a pair")
+}

@@ -1,0 +1,255 @@
+//! The test of the tests: shaders with one mistake each, which the comparison with the reference or the check against
+//! the Rust side must find.
+
+use std::ops::ControlFlow;
+
+use viewsphere::gpu::reflect;
+use viewsphere::kernel::Kernel;
+use viewsphere::kernels::{
+    ALL, advance, area, binomial, cast, cell_mean, cells, certain_expansion_x, certain_expansion_y,
+    certain_matrices, compare, confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices,
+    prime, remap, resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample,
+    weigh, window_y,
+};
+
+use crate::need;
+use crate::sides::{Compared, compare_sides};
+
+/// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
+fn mutant(kernel: &Kernel, from: &str, to: &str) -> Kernel {
+    let found = kernel.source.matches(from).count();
+    assert_eq!(found, 1, "{}: {from:?} stands in the shader so many times", kernel.name);
+    // A kernel's text lives as long as the program; that of a few mutants may, too.
+    Kernel { source: kernel.source.replacen(from, to, 1).leak(), ..*kernel }
+}
+
+/// Mistakes that leave a shader valid: only its results tell.
+#[rustfmt::skip]
+const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
+    (&luma::KERNEL, "19235u", "19236u"),
+    (&luma::KERNEL, " + 16384u", ""),
+    (&luma::KERNEL, "1.0 / 257.0", "1.0 / 256.0"),
+    (&luma::KERNEL, "vec4u(0u, 8u, 16u, 24u)", "vec4u(24u, 16u, 8u, 0u)"),
+    (&binomial::KERNEL, "reflect_101(x - 1, n)", "u32(max(x - 1, 0))"),
+    (&binomial::KERNEL, "row(x0, i32(y0) - 1)", "row(x0, i32(y0))"),
+    (&binomial::KERNEL, "let y = y0 + i;", "let y = y0 + i; if y == 4u { continue; }"),
+    (&resample_y::KERNEL, "min(j, params.taps)", "min(j, params.taps - 1u)"),
+    (&resample_y::KERNEL, "vec4f(before, w.xyz)", "vec4f(0.0, w.xyz)"),
+    (&resample_y::KERNEL, "select(rest, rest - period, rest >= period)", "rest + 1"),
+    (&resample_y::KERNEL, "i32(params.taps / 2u)", "i32(params.taps / 2u) + 1"),
+    (&resample_x::KERNEL, "min(j, params.taps)", "min(j, params.taps - 1u)"),
+    (&resample_x::KERNEL, "vec4f(before, w.xyz)", "vec4f(0.0, w.xyz)"),
+    (&resample_x::KERNEL, "id.x >= stride", "id.x >= params.width"),
+    (&expansion_y::KERNEL, "w.z * f5 + w.w * f6", "w.z * f5 + w.w * f5"),
+    (&expansion_y::KERNEL, "clamp_index(y, params.height)", "reflect_101(y, i32(params.height))"),
+    (&expansion_x::KERNEL, "params.inv_xx * m.m_yy", "params.inv_xx * m.m_xx"),
+    (&expansion_x::KERNEL, "last >= 1u", "true"),
+    (&expansion_x::KERNEL, "params.inv_xy * m.m_xy", "2.0 * params.inv_xy * m.m_xy"),
+    (&upsample::KERNEL, "min(left + 1u, vec4u(params.in_width - 1u - 4u * first))", "left"),
+    (&upsample::KERNEL, "number >= vec4u(4u)", "number >= vec4u(5u)"),
+    (&upsample::KERNEL, "params.scale * mixed", "mixed"),
+    (&area::KERNEL, "cover.w, i + 1u", "1.0, i + 1u"),
+    (&area::KERNEL, "all(abs(d) <= vec2f(1e9))", "true"),
+    (&matrices::KERNEL, "0.14, distance", "0.15, distance"),
+    (&matrices::KERNEL, "0.4472, distance", "0.45, distance"),
+    (&matrices::KERNEL, "let far = n - 1u - i", "let far = n - i"),
+    (&matrices::KERNEL, "whole < vec2f(f32(params.width)", "whole <= vec2f(f32(params.width)"),
+    (&matrices::KERNEL, "0.5 * (first.quad.w + other.quad.w)", "first.quad.w"),
+    (&matrices::KERNEL, "place - whole", "place"),
+    (&matrices::KERNEL, "params.carried * d", "d"),
+    (&matrices::KERNEL, "select(params.outside, 1.0, second.inside)", "1.0"),
+    (&window_y::KERNEL, "i32(params.height - 1u) * row", "i32(max(params.height, 2u) - 2u) * row"),
+    (&window_y::KERNEL, "clamp(at, first, last)", "max(at, 0)"),
+    (&window_y::KERNEL, "(2u * params.radius + 4u) / 4u", "(2u * params.radius) / 4u"),
+    (&window_y::KERNEL, "at <= end", "at < end"),
+    (&solve::KERNEL, "known((g_xx * h_y", "((g_xx * h_y"),
+    (&solve::KERNEL, " + 1e-3", ""),
+    (&solve::KERNEL, " + 1e-3", " + 1.01e-3"),
+    (&solve::KERNEL, " + 1e-3", " + 1.0002e-3"),
+    (&solve::KERNEL, "g_xx * g_yy - g_xy * g_xy", "g_xx * g_yy - 0.9999 * g_xy * g_xy"),
+    (&solve::KERNEL, "g_yy * h_x - g_xy * h_y", "g_yy * h_x - 1.0001 * g_xy * h_y"),
+    (&solve::KERNEL, "let last = i32(stride) - 1", "let last = i32(stride) - 2"),
+    (&solve::KERNEL, "repeat_last(d.u, 4u * four, params.width)", "d.u"),
+    (&advance::KERNEL, "so_far[row] + d.u", "d.u"),
+    (&advance::KERNEL, "so_far[row + stride]", "so_far[row]"),
+    (&advance::KERNEL, "2u * min(y, params.height - 1u) * stride", "min(y, params.height - 1u) * stride"),
+    (&residual::KERNEL, "select(0.0, certainty[i], second.inside)", "certainty[i]"),
+    (&residual::KERNEL, "second, vec2f());", "second, d);"),
+    (&confidence::KERNEL, "(g_xx + g_yy) - sqrt", "(g_xx + g_yy) + sqrt"),
+    (&weigh::KERNEL, "min(c, vec4f(1.0))", "c"),
+    (&weigh::KERNEL, "(c > vec4f())", "(c >= vec4f(-1.0))"),
+    (&certain_expansion_y::KERNEL, "c4 += c * (yyg * y * y)", "c4 += c * (yyg * y)"),
+    (&certain_expansion_x::KERNEL, "params.min_share, params.least_certainty", "0.0, params.least_certainty"),
+    (&certain_matrices::KERNEL, "select(certainty, sum, inside)", "sum"),
+    (&certain_matrices::KERNEL, "params.carried * d", "d"),
+    (&certain_matrices::KERNEL, "select(params.outside, 1.0, inside)", "1.0"),
+    (&prime::KERNEL, " - current.xy * moved.z", ""),
+    (&tangent::KERNEL, "-shift - (previous - unturned)", "-shift"),
+    (&tangent::KERNEL, "r.y * motion[1].xyz", "r.y * motion[2].xyz"),
+    (&tangent::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),
+    (&trust::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
+    (&trust::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&cell_mean::KERNEL, "select(0.0, 1.0, there)", "1.0"),
+    (&cell_mean::KERNEL, "* certainty[here]", "+ certainty[here]"),
+    (&cells::KERNEL, " - m.xy / z * seen.flow.z", ""),
+    (&cells::KERNEL, "known && m.z > 0.01", "m.z > 0.01"),
+    (&looming::KERNEL, "- 3.0 * dot(origin, here)", "- 2.0 * dot(origin, here)"),
+    (&looming::KERNEL, "0.5 * max(left, 0.0)", "0.0"),
+    (&looming::KERNEL, "trust >= params.least_trust", "true"),
+    (&looming::KERNEL, "i <= params.radius + params.inner", "i <= params.radius"),
+    (&sectors::KERNEL, "max(looming[at.y + at.z], 0.0)", "looming[at.y + at.z]"),
+    (&sectors::KERNEL, "below > ranks", "below >= ranks"),
+    (&sectors::KERNEL, "before & vec4<bool>(other.known)", "before"),
+    (&sectors::KERNEL, "normal.xxy * normal.yzz", "normal.xxy * normal.yyz"),
+    (&lens_map::KERNEL, "s * b.w", "s * a.w"),
+    (&lens_map::KERNEL, "a.z * (s + 2.0 * y * y)", "a.z * (s + 2.0 * x * x)"),
+    (&lens_map::KERNEL, "ray.z > 0.0", "ray.z > -1e9"),
+    (&lens_map::KERNEL, "across < params.limit.x * ray.z * ray.z", "true"),
+    (&lens_map::KERNEL, "* params.limit.y", "* 1e9"),
+    (&lens_map::KERNEL, "covered.x * covered.y", "covered.x"),
+    (&lens_map::KERNEL, "(params.margin + 1.0)", "(0.5 * params.margin + 1.0)"),
+    (&lens_map::KERNEL, "most > 1.0", "most > 2.0"),
+    (&lens_map::KERNEL, "min(value, 1.0)", "value"),
+    (&lens_map::KERNEL, "(pixel - params.out_centre)", "(pixel + 0.5 - params.out_centre)"),
+    (&lens_map::KERNEL, "dot(motion[0].xyz, r)", "dot(vec3f(motion[0].x, motion[1].x, motion[2].x), r)"),
+    (&remap::KERNEL, "held - whole", "place - whole"),
+    (&remap::KERNEL, "min(at.x + 1u, params.in_width - 1u)", "at.x"),
+    (&remap::KERNEL, "min(place, last)", "min(place, last + 1.0)"),
+    (&remap::KERNEL, "min(id.x, params.width - 1u)", "id.x"),
+    (&cast::KERNEL, "select(lid, vec4f(), mantle)", "lid"),
+    (&cast::KERNEL, "half.z == 0.0", "false"),
+    (&cast::KERNEL, "slope.z * OFFSET_X", "slope.y * OFFSET_X"),
+    (&cast::KERNEL, "size.x * size.x * a - w * w", "size.x * size.x * a - b * b"),
+    (&cast::KERNEL, "first_cylinder + i", "first_box + i"),
+    (&cast::KERNEL, "x / TILE.x", "x / TILE.y"),
+    (&cast::KERNEL, "(lz > vec4f()) != outside", "lz > vec4f()"),
+    (&shade::KERNEL, "left -= same", "left = vec4f()"),
+    (&shade::KERNEL, "params.share * ", ""),
+    (&shade::KERNEL, "select(0.0, sum, shown)", "sum"),
+    (&shade::KERNEL, "0.25 - octant", "octant"),
+    (&shade::KERNEL, "select(1.0, -1.0, facing > 0.0)", "1.0"),
+    (&shade::KERNEL, "share * share * (3.0 - 2.0 * share)", "share"),
+    (&shade::KERNEL, "select(per_metre, points, around)", "per_metre"),
+    (&shade::KERNEL, "wrapped = steps - points *", "wrapped = steps - 0.0 *"),
+    (&shade::KERNEL, "cells << vec2u(octave)", "cells"),
+    (&shade::KERNEL, "select(-root, root, inside)", "-root"),
+    (&shade::KERNEL, "one > 0.0 && middle.within", "one > 0.0"),
+    (&sensor::KERNEL, "params.noise * f32", "1.1 * params.noise * f32"),
+    (&sensor::KERNEL, "floor(level + 0.5)", "floor(level)"),
+    (&sensor::KERNEL, "seed[1] ^ ", ""),
+    (&sensor::KERNEL, "0.0, 255.0", "0.0, 256.0"),
+    (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
+];
+
+#[test]
+fn the_comparison_finds_every_mistake() {
+    let Some(gpu) = need::gpu() else { return };
+    let mut survivors = Vec::new();
+    for (kernel, from, to) in WRONG_RESULTS {
+        let mut found = None;
+        compare_sides(&gpu, &mutant(kernel, from, to), |compared| match compared.difference.breaches {
+            0 => ControlFlow::Continue(()),
+            _ => {
+                found = Some(compared.what);
+                ControlFlow::Break(())
+            }
+        })
+        .unwrap_or_else(|error| panic!("{from:?} as {to:?}: {error}"));
+        match found {
+            Some(what) => println!("{}: {from:?} as {to:?} found at {what}", kernel.name),
+            None => survivors.push(format!("{}: {from:?} as {to:?}", kernel.name)),
+        }
+    }
+    assert!(survivors.is_empty(), "not found:\n{}", survivors.join("\n"));
+}
+
+#[test]
+fn every_kernel_has_a_mistake_to_find() {
+    for kernel in ALL {
+        let mistakes = WRONG_RESULTS.iter().filter(|(of, _, _)| of.name == kernel.name).count();
+        assert!(mistakes > 0, "{} has none", kernel.name);
+    }
+}
+
+/// A row that is never stored shows as the poison that was there before, whatever the right values are.
+#[test]
+fn a_row_never_stored_is_found_as_poison() {
+    let Some(gpu) = need::gpu() else { return };
+    let skips = mutant(&window_y::KERNEL, "at <= end", "at < end");
+    compare_sides(&gpu, &skips, |Compared { what, difference }| {
+        let worst = difference.worst.unwrap_or_else(|| panic!("{what}: nothing found"));
+        assert_eq!(worst.found.to_bits(), compare::POISON.to_bits(), "{what}: {worst:?}");
+        ControlFlow::Continue(())
+    })
+    .unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[track_caller]
+fn refused(kernel: &Kernel, replacements: &[(&str, &str)], reason: &str) {
+    let wrong = replacements.iter().fold(*kernel, |kernel, (from, to)| mutant(&kernel, from, to));
+    match reflect(&wrong) {
+        Ok(shape) => panic!("{replacements:?} was taken: {shape:?}"),
+        Err(error) => assert!(error.to_string().contains(reason), "{error}, expected {reason:?}"),
+    }
+}
+
+#[test]
+fn a_layout_that_differs_from_rust_is_refused() {
+    let fields =
+        [("inv_1_xx: f32, // (1, x²)", "inv_xx: f32,"), ("inv_xx: f32,   // (x², x²)", "inv_1_xx: f32,")];
+    refused(&expansion_x::KERNEL, &fields, "in WGSL and");
+    refused(
+        &solve::KERNEL,
+        &[("    width: u32,\n    height: u32,", "    height: u32,\n    width: u32,")],
+        "in WGSL and",
+    );
+    refused(&upsample::KERNEL, &[("in_height: u32,", "in_height: u32, unused: u32,")], "params has");
+    refused(&luma::KERNEL, &[("    format: u32, ", "    format: u32, end: vec2f, ")], "params has");
+}
+
+#[test]
+fn bindings_that_differ_from_rust_are_refused() {
+    let renamed = [("uniform> window:", "uniform> weights:"), ("= window[k]", "= weights[k]")];
+    refused(&solve::KERNEL, &renamed, "is weights");
+    refused(&solve::KERNEL, &[("= window[k]", "= vec4f(f32(k))")], "window is never used");
+    refused(&solve::KERNEL, &[("array<vec4f, 1024>", "array<vec4f, 1023>")], "is window");
+    refused(&binomial::KERNEL, &[("<storage, read> gray", "<storage, read_write> gray")], "binding");
+    refused(&binomial::KERNEL, &[("@binding(2)", "@binding(3)")], "expected smooth_gray at 2");
+    refused(
+        &binomial::KERNEL,
+        &[
+            ("@binding(1)", "@binding(2)"),
+            ("@binding(2) var<storage, read_write>", "@binding(1) var<storage, read_write>"),
+        ],
+        "expected gray at 1",
+    );
+}
+
+#[test]
+fn workgroups_and_loops_without_a_bound_are_refused() {
+    refused(
+        &expansion_x::KERNEL,
+        &[("@workgroup_size(16, 1)", "@workgroup_size(16, 32)")],
+        "workgroup is 16×32×1",
+    );
+    refused(
+        &binomial::KERNEL,
+        &[("@workgroup_size(64, 1)", "@workgroup_size(16, 2, 2)")],
+        "workgroup is 16×2×2",
+    );
+    let open = [("min(steps, MAX_STEPS)", "steps")];
+    refused(&window_y::KERNEL, &open, "no stated bound");
+    refused(
+        &binomial::KERNEL,
+        &[("var above", "loop { if x0 == y0 { break; } } var above")],
+        "no stated bound",
+    );
+    refused(&area::KERNEL, &[("min(u32(x.y), MAX_COVER)", "u32(x.y)")], "no stated bound");
+}
+
+#[test]
+fn a_shader_without_its_entry_or_its_span_is_refused() {
+    refused(&binomial::KERNEL, &[("fn main(", "fn start(")], "entry point is start");
+    refused(&upsample::KERNEL, &[("const SPAN = vec2u(4u, 1u);", "")], "SPAN is missing");
+    refused(&upsample::KERNEL, &[("x4], y.y);", "x4], y.y;")], "upsample");
+}

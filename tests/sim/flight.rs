@@ -1,0 +1,182 @@
+//! The closed loop: it flies, it repeats itself bit for bit, and it says within a frame what has gone wrong.
+
+use viewsphere::Backend;
+use viewsphere::sim::flight::{Body, Fault, Flight, FlightConfig, Outcome, Record, Sensor, Summary};
+use viewsphere::sim::{Course, CourseKind};
+use viewsphere::steer::{Danger, Policy, Source};
+
+use crate::need;
+
+const CPU: [Backend; 2] = [Backend::Cpu, Backend::Cpu];
+
+fn course(name: &str, seed: u64) -> Course {
+    name.parse::<CourseKind>().unwrap().course(seed).unwrap()
+}
+
+fn config(sensor: Sensor) -> FlightConfig {
+    FlightConfig { sensor, ..FlightConfig::default() }
+}
+
+/// Flies for so many frames at most.
+fn records(backends: [Backend; 2], course: &Course, config: &FlightConfig, frames: usize) -> Vec<Record> {
+    let mut flight = Flight::new(backends, course, config).unwrap();
+    let mut records = Vec::new();
+    while records.len() < frames {
+        let summary = flight.step(|seen| {
+            records.push(seen.record.clone());
+            Ok(())
+        });
+        if summary.unwrap().is_some() {
+            break;
+        }
+    }
+    records
+}
+
+fn fly(course: &Course, config: &FlightConfig) -> Summary {
+    Flight::new(CPU, course, config).unwrap().fly(|_| Ok(())).unwrap()
+}
+
+#[test]
+fn what_sees_flies_past_the_wall_and_what_does_not_hits_it() {
+    let wall = course("wall", 3);
+    for sensor in [Sensor::Depth, Sensor::Flow, Sensor::NoisyFlow] {
+        let summary = fly(&wall, &config(sensor));
+        assert_eq!(summary.outcome, Outcome::Reached, "{sensor:?}: {summary:?}");
+        assert!(summary.least_clearance_m > 0.6 && summary.efficiency() > 0.7, "{summary:?}");
+    }
+    let mut blind = config(Sensor::Depth);
+    blind.steer.policy = Policy::None;
+    let summary = fly(&course("wall:offset=0", 3), &blind);
+    assert_eq!(summary.outcome, Outcome::Crashed, "{summary:?}");
+    assert!(summary.progress_m > 50.0 && summary.least_clearance_m <= 0.6, "{summary:?}");
+}
+
+#[test]
+fn each_policy_but_the_potential_field_flies_a_corridor_of_true_depth() {
+    // A potential field swings from wall to wall until it touches one.
+    for policy in [Policy::Balance, Policy::Heading, Policy::Arc] {
+        for danger in [Danger::Nearness, Danger::Divergence, Danger::Blend] {
+            let mut config = config(Sensor::Depth);
+            (config.steer.policy, config.steer.danger) = (policy, danger);
+            let records = records(CPU, &course("corridor", 2), &config, 150);
+            let last = records.last().unwrap();
+            // Five seconds without touching a wall; the corridor turns by more than its width in that time.
+            assert!(records.len() == 150 && last.progress_m > 45.0, "{policy:?} {danger:?}: {last:?}");
+        }
+    }
+}
+
+#[test]
+fn the_same_flight_again_is_the_same_bit_for_bit() {
+    let city = course("city", 5);
+    for sensor in [Sensor::NoisyFlow, Sensor::Images] {
+        let config = config(sensor);
+        assert_eq!(records(CPU, &city, &config, 25), records(CPU, &city, &config, 25), "{sensor:?}");
+    }
+    let other = records(CPU, &course("city", 6), &config(Sensor::Images), 25);
+    assert_ne!(records(CPU, &city, &config(Sensor::Images), 25), other);
+}
+
+#[test]
+fn pictures_tell_the_direction_of_motion_and_the_time_to_contact() {
+    let mut config = config(Sensor::Images);
+    config.steer.policy = Policy::None;
+    let records = records(CPU, &course("wall:incidence=0:offset=0", 1), &config, 240);
+    let mut errors: Vec<f64> = records.iter().skip(5).filter_map(|r| r.heading_error_rad).collect();
+    errors.sort_by(f64::total_cmp);
+    // 0.2° in the median is usual.
+    assert!(errors.len() > 100 && errors[errors.len() / 2] < 0.02, "{errors:?}");
+    let near = records.iter().filter(|r| r.true_contact_s.is_some_and(|time| (0.7..3.0).contains(&time)));
+    let mut off: Vec<f64> =
+        near.map(|r| (r.contact_s.unwrap_or(1e3) / r.true_contact_s.unwrap() - 1.0).abs()).collect();
+    off.sort_by(f64::total_cmp);
+    assert!(off.len() > 30 && off[off.len() / 2] < 0.1, "{off:?}");
+}
+
+/// The frames of a flight with a fault from 0.5 s to 0.8 s, to some time after its end.
+fn with_fault(backends: [Backend; 2], fault: &str) -> Vec<Record> {
+    with_faults(backends, &[&format!("{fault}:0.5..0.8")])
+}
+
+fn with_faults(backends: [Backend; 2], faults: &[&str]) -> Vec<Record> {
+    let mut config = config(Sensor::Images);
+    config.faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+    records(backends, &course("wall", 3), &config, 36)
+}
+
+#[test]
+fn each_fault_is_said_within_a_frame_and_passes() {
+    for (fault, reason) in [
+        ("frozen", "the picture is the one before again"),
+        ("black", "is trusted"),
+        ("gyro-lost", "gyro"),
+        ("gyro-bias=5", "the flow turns by"),
+        ("nan", "NaN s since the frame before"),
+    ] {
+        let records = with_fault(CPU, fault);
+        assert_eq!(records.len(), 36, "{fault}");
+        assert!((1..15).all(|i| records[i].invalid.is_none()), "{fault}");
+        let said: Vec<_> = (15..18).filter_map(|i| records[i].invalid.as_deref()).collect();
+        assert!(said[0].contains(reason), "{fault}: {said:?}");
+        assert!(records[15].invalid.is_some() || records[16].invalid.is_some(), "{fault}: {said:?}");
+        assert_eq!(records[35].invalid, None, "{fault}");
+        let sources: Vec<Source> = records.iter().map(|record| record.source).collect();
+        // Held at first; when the fault has been there for as long as is held, the wings are levelled.
+        assert!(sources.contains(&Source::Held) || sources[0..].contains(&Source::Recovery), "{fault}");
+        assert_eq!(sources[35], Source::Cue, "{fault}");
+    }
+}
+
+#[test]
+fn dropped_frames_are_said_and_the_rest_goes_on() {
+    let mut config = config(Sensor::Images);
+    config.faults = vec!["dropped=0.2".parse().unwrap()];
+    let records = records(CPU, &course("wall", 3), &config, 60);
+    let dropped = records.iter().filter(|r| r.invalid.as_deref() == Some("the frame was dropped")).count();
+    assert!((4..=24).contains(&dropped), "{dropped} of 60");
+    let valid = records.iter().filter(|r| r.invalid.is_none()).count();
+    assert!(valid + dropped >= 58, "{valid} valid, {dropped} dropped");
+}
+
+#[test]
+fn a_lost_device_is_said_and_brought_back_once() {
+    let Some(shared) = need::gpu() else { return };
+    let gpu = || Backend::Gpu(shared.reopen().unwrap());
+    let records = with_faults([gpu(), gpu()], &["device-lost:0.5", "device-lost:0.8"]);
+    assert_eq!(records.len(), 36);
+    let lost = |frame: usize| records[frame].invalid.as_ref().is_some_and(|why| why.contains("lost"));
+    assert!((lost(15) || lost(16)) && records[20..24].iter().all(|r| r.invalid.is_none()));
+    // The engine opens it once; from then on the aircraft flies as it is to without a cue.
+    assert!((25..36).all(lost) && records[35].source == Source::Recovery);
+}
+
+#[test]
+fn what_is_out_of_range_is_refused() {
+    let wall = course("wall", 1);
+    let refused = |change: fn(&mut FlightConfig), name: &str| {
+        let mut config = config(Sensor::Depth);
+        change(&mut config);
+        let error = Flight::new(CPU, &wall, &config).err().unwrap().to_string();
+        assert!(error.contains(name) && !error.contains('\n'), "{error}");
+    };
+    refused(|c| c.speed_m_s = 0.0, "speed_m_s");
+    refused(|c| c.radius_m = f64::NAN, "radius_m");
+    refused(|c| c.latency_frames = 31, "latency_frames");
+    refused(|c| c.patience = 0.5, "patience");
+    refused(|c| c.flow_noise.blur_px = -1.0, "flow_noise.blur_px");
+    refused(
+        |c| {
+            c.body =
+                Body::Turn(viewsphere::sim::vehicle::TurnParams { bank_lag_s: -1.0, ..Default::default() })
+        },
+        "bank_lag_s",
+    );
+    refused(
+        |c| {
+            c.faults =
+                vec![Fault { kind: viewsphere::sim::flight::FaultKind::Black, from_s: 2.0, until_s: 1.0 }]
+        },
+        "fault",
+    );
+}
