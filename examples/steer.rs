@@ -8,7 +8,7 @@ use viewsphere::sim::vehicle::{
     CoordinatedTurn, GyroErrors, GyroModel, STEP_S, Start, TurnParams, Vehicle, Wind,
 };
 use viewsphere::sim::{CourseKind, RayTable, reference_render};
-use viewsphere::steer::{Goal, Observation, SteerConfig, Steering, View};
+use viewsphere::steer::{Aircraft, Goal, Observation, SteerConfig, Steering, View};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
 /// Steps of the gyro, at 240 Hz, from frame to frame.
@@ -21,7 +21,8 @@ fn main() -> viewsphere::Result<()> {
     let mut pipeline =
         Pipeline::new(Backend::Cpu, &camera, &PipelineConfig { gyro: Some(gyro), ..pipeline })?;
     // What is decided acts at once here; an aircraft says how long that takes it.
-    let mut steering = Steering::new(SteerConfig { latency_s: 0.0, ..SteerConfig::default() })?;
+    let aircraft = Aircraft { latency_s: 0.0, ..Aircraft::default() };
+    let mut steering = Steering::new(SteerConfig { aircraft, ..SteerConfig::default() })?;
 
     let course = "wall:distance=50:incidence=0:offset=5".parse::<CourseKind>()?.course(3)?;
     let start = Start { position_ned_m: course.start_ned_m, yaw_rad: course.start_yaw_rad, speed_m_s: 12.0 };

@@ -1,5 +1,6 @@
 //! What can go wrong. Every message is one line that names the thing, the value found and what was expected.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use crate::raster::{PixelFormat, Size};
@@ -27,7 +28,7 @@ pub enum Error {
         /// The file, or a name such as `standard input`.
         path: PathBuf,
         /// The part of the file that is wrong, for example `magic number`.
-        what: &'static str,
+        what: Cow<'static, str>,
         /// The value found there.
         found: String,
         /// What was expected instead.
@@ -189,13 +190,13 @@ impl Error {
     /// An [`Error::Format`] of a file.
     pub fn format(
         path: impl AsRef<Path>,
-        what: &'static str,
+        what: impl Into<Cow<'static, str>>,
         found: impl ToString,
         expected: impl ToString,
     ) -> Self {
         Self::Format {
             path: path.as_ref().to_owned(),
-            what,
+            what: what.into(),
             found: found.to_string(),
             expected: expected.to_string(),
         }
@@ -205,6 +206,19 @@ impl Error {
     pub fn parameter(name: &'static str, value: impl ToString, expected: impl ToString) -> Self {
         Self::Parameter { name, value: value.to_string(), expected: expected.to_string() }
     }
+}
+
+/// Checks named values against their ranges, both ends included: (name, value, low, high).
+///
+/// # Errors
+/// [`Error::Parameter`] naming the first one that is out of range or NaN.
+pub(crate) fn in_ranges(values: &[(&'static str, f64, f64, f64)]) -> Result<()> {
+    for &(name, value, low, high) in values {
+        if !(low..=high).contains(&value) {
+            return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -68,8 +68,11 @@ pub mod io;
 pub mod kernel;
 pub mod kernels;
 pub mod live;
+mod named;
 pub mod pipeline;
 pub mod plan;
+#[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "flights use more of it"))]
+mod quantile;
 mod raster;
 #[cfg(feature = "report")]
 pub mod report;

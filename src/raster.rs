@@ -4,6 +4,7 @@ use std::fmt;
 
 /// Width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Size {
     /// Pixels in a row.
     pub width: u32,
@@ -39,6 +40,7 @@ impl fmt::Display for Size {
 
 /// How a pixel is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum PixelFormat {
     /// One byte, 0 to 255.
     Gray8,

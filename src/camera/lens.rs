@@ -18,6 +18,7 @@ const MAX_HALVINGS: usize = 40;
 /// q = (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶),
 /// x′ = x q + 2 p1 x y + p2 (r² + 2x²), y′ = y q + p1 (r² + 2y²) + 2 p2 x y.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lens {
     /// k1 k2 p1 p2 k3 k4 k5 k6; those that are not used are 0.
     pub coefficients: [f64; 8],

@@ -14,12 +14,14 @@ use glam::{DMat3, DVec3};
 
 pub use framing::Framing;
 pub use lens::Lens;
+pub(crate) use pose::is_rotation;
 pub use pose::{FLU_FROM_CAMERA, FRD_FROM_CAMERA, Pose, roll_pitch_yaw_rad, world_from_body};
 
 use crate::frame::Size;
 
 /// A planar camera: a pinhole behind a lens, without skew.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Camera {
     /// Width and height of its pictures.
     pub size: Size,

@@ -29,6 +29,15 @@ pub fn world_from_body(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> DMat3 {
     )
 }
 
+/// How far a rotation that a user gives may be from one, element by element of M Mᵀ − 1. Files state four digits and more.
+const ROTATION_TOLERANCE: f64 = 1e-3;
+
+/// Whether a matrix is a rotation, to the digits that files state: orthogonal, and no mirror.
+pub(crate) fn is_rotation(m: &DMat3) -> bool {
+    let off = (*m * m.transpose() - DMat3::IDENTITY).to_cols_array();
+    off.iter().all(|e| e.abs() <= ROTATION_TOLERANCE) && m.determinant() > 0.0
+}
+
 /// Roll, pitch and yaw of a rotation: the inverse of [`world_from_body`], pitch from −π/2 to π/2, the others from −π to π.
 ///
 /// With the nose straight up or down, where only the sum or the difference of roll and yaw is known, roll is 0.

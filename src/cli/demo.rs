@@ -16,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::eval::{Scene, endpoint_error, flow_error};
 use crate::frame::{FlowField, Image, Plane, Size};
 use crate::io::{flo, picture};
+use crate::quantile::sorted;
 use crate::report::{arrows, colour_wheel};
 
 /// Frames that are streamed for the speed, beside the first.
@@ -91,7 +92,7 @@ impl Demo {
             engine.process(&frame)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
-        times.sort_by(f64::total_cmp);
+        let times = sorted(times);
         let median = times[times.len() / 2];
         let report = Report {
             backend: engine.adapter(),

@@ -7,6 +7,7 @@ use crate::stream::StreamConfig;
 
 /// The configuration of an [`Engine`](super::Engine): which flow, of which frames, and how the stream is run.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Config {
     /// The estimator and its parameters.
     pub algorithm: Algorithm,

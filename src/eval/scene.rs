@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::frame::{FlowField, Image, PixelFormat, Size};
+use crate::kernels::hash::{finalised, scrambled};
 
 /// Grid spacings of the texture's octaves in pixels. The finest keeps the texture below half the sampling rate.
 const SPACINGS: [f64; 4] = [4.0, 8.0, 16.0, 32.0];
@@ -123,14 +124,7 @@ fn spline(at: f64) -> (i32, [f64; 4]) {
 
 /// A number from −1 to 1 that depends on the grid point alone, by the finaliser of MurmurHash3.
 fn random(i: i32, j: i32, grid: u32) -> f64 {
-    let mix = |mut hash: u32| {
-        hash ^= hash >> 16;
-        hash = hash.wrapping_mul(0x85eb_ca6b);
-        hash ^= hash >> 13;
-        hash = hash.wrapping_mul(0xc2b2_ae35);
-        hash ^ hash >> 16
-    };
-    let hash = mix(mix(mix(grid ^ 0x5bd1_e995) ^ i as u32) ^ j as u32);
+    let hash = finalised(finalised(scrambled(grid) ^ i as u32) ^ j as u32);
     f64::from(hash) / f64::from(u32::MAX) * 2.0 - 1.0
 }
 

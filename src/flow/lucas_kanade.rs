@@ -16,6 +16,7 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Parameters of dense pyramidal Lucas–Kanade flow.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LucasKanade {
     /// A level's size against the next finer one, in (0, 1).
     pub pyr_scale: f64,

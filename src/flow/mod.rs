@@ -29,6 +29,7 @@ macro_rules! estimators {
         /// A method that estimates optical flow, with its parameters.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize))]
         pub enum Algorithm {
             $(#[allow(missing_docs, reason = "the type says what it is")] $Type($Type)),*
         }

@@ -96,6 +96,7 @@ impl Image {
 
 /// A plane of one `f32` a pixel, rows without gaps: a certainty, a confidence, a depth.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Plane {
     /// Width and height.
     pub size: Size,

@@ -1,9 +1,7 @@
 use glam::{DMat3, DVec3};
 
+use crate::camera::is_rotation;
 use crate::error::{Error, Result};
-
-/// How far `camera_from_gyro` may be from a rotation, element by element of M Mᵀ. Files state four digits and more.
-const ROTATION_TOLERANCE: f64 = 1e-3;
 
 /// What a gyro measured at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +16,7 @@ pub struct GyroSample {
 
 /// How a gyro's samples belong to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct GyroConfig {
     /// What the gyro says at rest, in its own frame, rad/s. It is taken off every sample.
     pub bias_rad_s: DVec3,
@@ -63,10 +62,9 @@ impl GyroConfig {
         if !(2..=1 << 24).contains(&self.history) {
             return Err(Error::parameter("history", self.history, "2 to 16777216"));
         }
-        let m = self.camera_from_gyro;
-        let off = (m * m.transpose() - DMat3::IDENTITY).to_cols_array();
-        if !(off.iter().all(|e| e.abs() <= ROTATION_TOLERANCE) && m.determinant() > 0.0) {
-            return Err(Error::parameter("camera_from_gyro", m, "a rotation, of determinant 1"));
+        if !is_rotation(&self.camera_from_gyro) {
+            let found = self.camera_from_gyro;
+            return Err(Error::parameter("camera_from_gyro", found, "a rotation, of determinant 1"));
         }
         Ok(())
     }

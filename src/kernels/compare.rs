@@ -1,6 +1,7 @@
 //! Whether two results agree. Both sides of every kernel and both executors of a plan are held against each other here.
 
 use crate::kernel::Bound;
+use crate::quantile::nearest_rank;
 
 /// What outputs are filled with before a kernel runs: not a number, and recognisable, so that a value that was never
 /// written is found even where not-a-number is the right answer.
@@ -69,7 +70,7 @@ pub fn compare(expected: &[f32], found: &[f32], within: &Bound) -> Difference {
     differences.sort_unstable_by(f32::total_cmp);
     if let Some(max) = differences.last() {
         result.max = *max;
-        result.p999 = differences[(count * 999).div_ceil(1000) - 1];
+        result.p999 = nearest_rank(&differences, 999).unwrap_or(*max);
         result.mean = differences.iter().map(|d| f64::from(*d)).sum::<f64>() / count as f64;
     }
     result

@@ -10,6 +10,7 @@ use crate::stream::StreamConfig;
 
 /// How a [`Pipeline`](super::Pipeline) works.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PipelineConfig {
     /// The estimator of the flow and its parameters.
     pub algorithm: Algorithm,

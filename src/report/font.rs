@@ -1,84 +1,86 @@
-//! Letters and digits for pictures, 3×5 dots each.
+//! Text on pictures, in fixed-width fonts of X11 as embedded-graphics has them.
+
+use std::convert::Infallible;
+
+use embedded_graphics::Drawable;
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{OriginDimensions, Point, Size};
+use embedded_graphics::mono_font::iso_8859_1::{FONT_5X7, FONT_7X13, FONT_10X20};
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
+use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
+use embedded_graphics::text::{Baseline, Text};
 
 use crate::frame::Image;
 
-/// Dots from one character to the next.
-const ADVANCE: usize = 4;
-/// Dots of a character's height.
-const HEIGHT: usize = 5;
+/// Pixels of black around a text, for a font that is not enlarged.
+const MARGIN: usize = 1;
 
-/// Writes digits, letters (in capitals) and some signs, with black around them, on a picture of
-/// [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). A dot is `scale` pixels wide; the first one's upper left corner
-/// is at `at`, or as near to it as all of the text fits in. What has no glyph is a blank.
+/// Writes a line of text, with black around it, on a picture of
+/// [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). It is about 7 `scale` pixels high; its upper left corner is at
+/// `at`, or as near to it as all of the text fits in. A character that the fonts (ISO 8859-1) lack is a question mark.
 pub(super) fn text(image: &mut Image, at: [f64; 2], text: &str, colour: [u8; 3], scale: usize) {
-    let (width, height) = (image.size.width as usize, image.size.height as usize);
-    let room = [scale * (ADVANCE * text.chars().count() + 1), scale * (HEIGHT + 2)];
+    let (font, zoom) = font(scale);
+    // A minus and a dash that Latin-1 does not have.
+    let text = text.replace(['\u{2212}', '–'], "-");
+    let [width, height] = [image.size.width as usize, image.size.height as usize];
+    let characters = text.chars().count();
+    let letter = [font.character_size.width as usize, font.character_size.height as usize];
+    let room = [characters * letter[0], letter[1]].map(|side| zoom * (side + 2 * MARGIN));
     let fit = |at: f64, room: usize, side: usize| (at.max(0.0) as usize).min(side.saturating_sub(room));
-    let [left, top] = [fit(at[0], room[0], width), fit(at[1], room[1], height)];
-    let glyphs: Vec<[u8; HEIGHT]> = text.chars().map(glyph).collect();
-    for y in 0..room[1].min(height) {
-        for x in 0..room[0].min(width) {
-            // A dot of black on each side.
-            let dot = |pixel: usize| (pixel / scale).wrapping_sub(1);
-            let glyph = glyphs.get(dot(x) / ADVANCE);
-            let row = glyph.and_then(|glyph| glyph.get(dot(y))).copied().unwrap_or(0);
-            let lit = dot(x) < ADVANCE * glyphs.len() && row << (dot(x) % ADVANCE) & 0b100 != 0;
-            let pixel = 3 * ((top + y) * width + left + x);
-            image.data[pixel..pixel + 3].copy_from_slice(if lit { &colour } else { &[0; 3] });
-        }
+    let corner = [fit(at[0], room[0], width), fit(at[1], room[1], height)];
+    for row in image.data.chunks_exact_mut(3 * width).skip(corner[1]).take(room[1]) {
+        row[3 * corner[0]..3 * (corner[0] + room[0]).min(width)].fill(0);
+    }
+    let style = MonoTextStyle::new(font, Rgb888::new(colour[0], colour[1], colour[2]));
+    let margin = Point::new(MARGIN as i32, MARGIN as i32);
+    let text = Text::with_baseline(&text, margin, style, Baseline::Top);
+    let Ok(_) = text.draw(&mut Enlarged { image, corner, zoom });
+}
+
+/// A font, and how many pixels wide one of its dots is drawn.
+fn font(scale: usize) -> (&'static MonoFont<'static>, usize) {
+    match scale {
+        0 | 1 => (&FONT_5X7, 1),
+        2 => (&FONT_7X13, 1),
+        _ => (&FONT_10X20, scale / 3),
     }
 }
 
-/// A character's rows, the leftmost dot in the third bit.
-fn glyph(character: char) -> [u8; HEIGHT] {
-    match character.to_ascii_uppercase() {
-        '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
-        '1' => [0b010, 0b110, 0b010, 0b010, 0b111],
-        '2' => [0b111, 0b001, 0b111, 0b100, 0b111],
-        '3' => [0b111, 0b001, 0b111, 0b001, 0b111],
-        '4' => [0b101, 0b101, 0b111, 0b001, 0b001],
-        '5' => [0b111, 0b100, 0b111, 0b001, 0b111],
-        '6' => [0b111, 0b100, 0b111, 0b101, 0b111],
-        '7' => [0b111, 0b001, 0b010, 0b010, 0b010],
-        '8' => [0b111, 0b101, 0b111, 0b101, 0b111],
-        '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
-        '.' => [0b000, 0b000, 0b000, 0b000, 0b010],
-        '-' => [0b000, 0b000, 0b111, 0b000, 0b000],
-        '+' => [0b000, 0b010, 0b111, 0b010, 0b000],
-        ':' => [0b000, 0b010, 0b000, 0b010, 0b000],
-        '/' => [0b001, 0b001, 0b010, 0b100, 0b100],
-        '°' => [0b010, 0b101, 0b010, 0b000, 0b000],
-        ',' => [0b000, 0b000, 0b000, 0b010, 0b100],
-        '%' => [0b101, 0b001, 0b010, 0b100, 0b101],
-        '(' => [0b001, 0b010, 0b010, 0b010, 0b001],
-        ')' => [0b100, 0b010, 0b010, 0b010, 0b100],
-        'A' => [0b010, 0b101, 0b111, 0b101, 0b101],
-        'B' => [0b110, 0b101, 0b110, 0b101, 0b110],
-        'C' => [0b011, 0b100, 0b100, 0b100, 0b011],
-        'D' => [0b110, 0b101, 0b101, 0b101, 0b110],
-        'E' => [0b111, 0b100, 0b110, 0b100, 0b111],
-        'F' => [0b111, 0b100, 0b110, 0b100, 0b100],
-        'G' => [0b011, 0b100, 0b101, 0b101, 0b011],
-        'H' => [0b101, 0b101, 0b111, 0b101, 0b101],
-        'I' => [0b111, 0b010, 0b010, 0b010, 0b111],
-        'J' => [0b001, 0b001, 0b001, 0b101, 0b010],
-        'K' => [0b101, 0b101, 0b110, 0b101, 0b101],
-        'L' => [0b100, 0b100, 0b100, 0b100, 0b111],
-        'M' => [0b101, 0b111, 0b111, 0b101, 0b101],
-        'N' => [0b110, 0b101, 0b101, 0b101, 0b101],
-        'O' => [0b010, 0b101, 0b101, 0b101, 0b010],
-        'P' => [0b110, 0b101, 0b110, 0b100, 0b100],
-        'Q' => [0b010, 0b101, 0b101, 0b111, 0b011],
-        'R' => [0b110, 0b101, 0b110, 0b101, 0b101],
-        'S' => [0b011, 0b100, 0b010, 0b001, 0b110],
-        'T' => [0b111, 0b010, 0b010, 0b010, 0b010],
-        'U' => [0b101, 0b101, 0b101, 0b101, 0b111],
-        'V' => [0b101, 0b101, 0b101, 0b101, 0b010],
-        'W' => [0b101, 0b101, 0b111, 0b111, 0b101],
-        'X' => [0b101, 0b101, 0b010, 0b101, 0b101],
-        'Y' => [0b101, 0b101, 0b010, 0b010, 0b010],
-        'Z' => [0b111, 0b001, 0b010, 0b100, 0b111],
-        _ => [0; HEIGHT],
+/// A picture to draw on from a corner on, each dot as a square of pixels. What is outside is not drawn.
+struct Enlarged<'a> {
+    image: &'a mut Image,
+    corner: [usize; 2],
+    zoom: usize,
+}
+
+impl OriginDimensions for Enlarged<'_> {
+    fn size(&self) -> Size {
+        Size::new(self.image.size.width, self.image.size.height)
+    }
+}
+
+impl DrawTarget for Enlarged<'_> {
+    type Color = Rgb888;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let [width, height] = [self.image.size.width as usize, self.image.size.height as usize];
+        for Pixel(Point { x, y }, colour) in pixels {
+            let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { continue };
+            let range = |corner: usize, dot: usize, side: usize| {
+                let from = corner + self.zoom * dot;
+                from.min(side)..(from + self.zoom).min(side)
+            };
+            let columns = range(self.corner[0], x, width);
+            for row in range(self.corner[1], y, height) {
+                let row = &mut self.image.data[3 * row * width..][..3 * width];
+                for pixel in row.as_chunks_mut::<3>().0[columns.clone()].iter_mut() {
+                    *pixel = [colour.r(), colour.g(), colour.b()];
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -87,9 +89,9 @@ mod tests {
     use super::*;
     use crate::frame::{PixelFormat, Size};
 
-    fn written(size: Size, at: [f64; 2], characters: &str) -> Vec<String> {
+    fn written(size: Size, at: [f64; 2], characters: &str, scale: usize) -> Vec<String> {
         let mut image = Image { size, format: PixelFormat::Rgb8, data: vec![9; 3 * size.pixels()] };
-        text(&mut image, at, characters, [255; 3], 1);
+        text(&mut image, at, characters, [255; 3], scale);
         let sign = |pixel: &[u8]| match pixel[0] {
             255 => '#',
             0 => '.',
@@ -99,27 +101,47 @@ mod tests {
         rows.map(|row| row.chunks_exact(3).map(sign).collect()).collect()
     }
 
+    fn lit(size: Size, at: [f64; 2], characters: &str, scale: usize) -> usize {
+        written(size, at, characters, scale).concat().matches('#').count()
+    }
+
     #[test]
     fn digits_look_like_digits() {
         let expected = [
-            "         ",
-            ".........",
-            "..#..###.",
-            ".##....#.",
-            "..#...#..",
-            "..#...#..",
-            ".###..#..",
-            ".........",
+            "             ",
+            "............ ",
+            "...#...####. ",
+            "..##......#. ",
+            "...#.....##. ",
+            "...#.....#.. ",
+            "...#....#... ",
+            "..###...#... ",
+            "............ ",
+            "............ ",
         ];
-        assert_eq!(written(Size::new(9, 8), [0.0, 1.0], "17"), expected);
+        assert_eq!(written(Size::new(13, 10), [0.0, 1.0], "17", 1), expected);
     }
 
     #[test]
     fn text_stays_inside() {
-        for at in [[-9.0, 1e9], [f64::NAN, f64::INFINITY], [100.0, -1.0]] {
-            let rows = written(Size::new(10, 8), at, "17");
-            assert_eq!(rows.concat().matches('#').count(), 15, "{at:?}");
-            written(Size::new(3, 2), at, "0.5s");
+        let size = Size::new(130, 50);
+        for scale in [1, 2, 3, 6] {
+            let whole = lit(size, [0.0, 0.0], "17", scale);
+            for at in [[-9.0, 1e9], [f64::NAN, f64::INFINITY], [1000.0, -1.0]] {
+                assert_eq!(lit(size, at, "17", scale), whole, "{at:?} {scale}");
+                written(Size::new(3, 2), at, "0.5 s", scale);
+            }
         }
+    }
+
+    #[test]
+    fn signs_of_figures_are_there() {
+        let size = Size::new(40, 24);
+        let unknown = written(size, [0.0; 2], "?", 3);
+        for sign in "°±µ%+-–\u{2212}²/<>=_".chars() {
+            assert_ne!(written(size, [0.0; 2], &sign.to_string(), 3), unknown, "{sign}");
+        }
+        assert_eq!(written(size, [0.0; 2], "→", 3), unknown);
+        assert_eq!(lit(Size::new(80, 48), [0.0; 2], "8", 6), 4 * lit(size, [0.0; 2], "8", 3));
     }
 }

@@ -17,6 +17,7 @@ pub mod flight;
 mod font;
 #[cfg(feature = "sim")]
 mod footprint;
+#[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "pages of flights use more of it"))]
 mod html;
 mod overlay;
 #[cfg(feature = "sim")]

@@ -8,6 +8,7 @@ use super::{Hit, RayTable, World};
 use crate::camera::{Camera, Pose};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, UNKNOWN_FLOW};
+use crate::sphere::model::bearing_rate;
 
 /// A point is hidden if something is nearer to the camera by more than this share of its distance.
 const HIDDEN: f64 = 1e-6;
@@ -35,8 +36,7 @@ pub struct Seen {
 impl Seen {
     /// How the bearing moves: −ρ(v − p(pᵀv)) + p × ω, rad/s.
     pub fn flow_rad_s(&self, motion: &Twist) -> DVec3 {
-        let (p, v) = (self.bearing, motion.velocity_m_s);
-        -self.nearness_per_m * (v - p * p.dot(v)) + p.cross(motion.rate_rad_s)
+        bearing_rate(self.bearing, self.nearness_per_m, motion.velocity_m_s, motion.rate_rad_s)
     }
 
     /// ρ‖v‖, 1/s: one over the time in which the camera flies the distance of what is seen.

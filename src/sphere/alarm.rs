@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 
 /// When an alarm is raised.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Alarm {
     /// What is met within this time is a threat, in seconds, above 0 and at most 60.
     pub within_s: f64,

@@ -1,10 +1,11 @@
 //! How the view sphere is looked at.
 
 use super::HeadingModel;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_ranges};
 
 /// Where the camera's turn is taken out of the flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Derotation {
     /// Before the flow: the frame before is resampled as the turned camera would have seen it, so that only what is
     /// left has to be found. Most accurate in hard turns; the frame before is expanded once more for every pair.
@@ -18,6 +19,7 @@ pub enum Derotation {
 
 /// How the flow on the view sphere is summed up.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sphere {
     /// Where the camera's turn is taken out.
     pub derotation: Derotation,
@@ -77,16 +79,11 @@ impl Sphere {
                 return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
             }
         }
-        for (name, value, low, high) in [
+        in_ranges(&[
             ("quantile", self.quantile, 0.5, 0.99),
             ("least_confidence", self.least_confidence, 0.01, 0.9),
             ("noise_px", self.noise_px, 1e-6, 10.0),
             ("margin_px", self.margin_px, 0.0, 1000.0),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
-            }
-        }
-        Ok(())
+        ])
     }
 }

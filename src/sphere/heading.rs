@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::eigen::symmetric_eigen;
 use super::motion::Heading;
 use super::sectors::Sectors;
+use crate::quantile::median;
 
 /// How much of what the frames before said is kept from frame to frame.
 const MEMORY: f64 = 0.8;
@@ -19,6 +20,7 @@ const ALIKE: f64 = 4.0;
 
 /// What stays as it is from frame to frame while the camera turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum HeadingModel {
     /// The direction of motion in the world: the vehicle goes straight on, however the camera is turned or shaken.
     #[default]
@@ -97,12 +99,6 @@ impl HeadingFilter {
         let error_rad = (values[0] / (values[1] - values[0]) / independent).sqrt().hypot(FLOOR_RAD);
         Heading { direction: leading(axes[0], sectors), error_rad }
     }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 fn trace(m: &DMat3) -> f64 {

@@ -28,6 +28,7 @@ pub(crate) struct Cameras<'a> {
 
 /// Fields that are read beside the sectors, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ExtraOutputs {
     /// Nearness rate, divergence, error and confidence of each cell.
     pub looming: bool,

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::eigen::symmetric_eigen;
 use super::sectors::Sectors;
+use crate::quantile::median;
 
 /// Rounds of Gauss and Newton's method.
 const ROUNDS: usize = 15;
@@ -43,9 +44,7 @@ pub fn residual_rotation_rad_s(sectors: &Sectors) -> Option<DVec3> {
         let (a, b) = direction.any_orthonormal_pair();
         let rows: Vec<([f64; UNKNOWNS], f64, f64)> =
             seen.iter().filter_map(|sector| row(sector, turn, direction, [a, b])).collect();
-        let mut misfits: Vec<f64> = rows.iter().map(|(_, misfit, _)| misfit.abs()).collect();
-        misfits.sort_by(f64::total_cmp);
-        let typical = (2.0 * misfits.get(misfits.len() / 2)?).max(1e-4);
+        let typical = (2.0 * median(rows.iter().map(|(_, misfit, _)| misfit.abs()))?).max(1e-4);
         let (mut matrix, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
         for (slopes, misfit, weight) in &rows {
             // The first round takes everything as it is.
@@ -78,9 +77,8 @@ fn seen(sectors: &Sectors) -> Vec<SectorFlow> {
         })
         .collect();
     // Something fast that moves by itself must not lead the first round astray.
-    let mut speeds: Vec<f64> = seen.iter().map(|sector| sector.flow.length()).collect();
-    speeds.sort_by(f64::total_cmp);
-    let usual = speeds.get(speeds.len() / 2).map_or(1.0, |usual| usual.max(1e-4));
+    let speed = median(seen.iter().map(|sector| sector.flow.length()));
+    let usual = speed.map_or(1.0, |speed| speed.max(1e-4));
     seen.iter_mut().for_each(|sector| sector.weight /= 1.0 + (sector.flow.length() / usual).powi(2));
     seen
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::observation::Moving;
 use super::obstacles::Obstacle;
-use super::{Command, Goal, SteerConfig};
+use super::{Command, Goal, SteerConfig, SteerParams};
 
 /// Banks to each side, equally spaced up to the limit.
 const BANKS: i32 = 6;
@@ -53,14 +53,15 @@ impl Start<'_> {
 
 /// The cheapest arc.
 pub(super) fn cheapest(config: &SteerConfig, start: &Start<'_>, obstacles: &[Obstacle]) -> Arc {
-    let near = Near::new(config, start.moving.speed_m_s, obstacles);
-    let level = hold_altitude(config, &start.goal);
-    let climbs = [level, -config.max_climb_rad, config.max_climb_rad];
+    let params = &config.params;
+    let near = Near::new(params, start.moving.speed_m_s, obstacles);
+    let level = hold_altitude(params, &start.goal);
+    let climbs = [level, -params.max_climb_rad, params.max_climb_rad];
     let mut best: Option<Arc> = None;
     for climb_rad in climbs {
         for i in -BANKS..=BANKS {
             let command =
-                Command { bank_rad: config.max_bank_rad * f64::from(i) / f64::from(BANKS), climb_rad };
+                Command { bank_rad: params.max_bank_rad * f64::from(i) / f64::from(BANKS), climb_rad };
             for hold_s in HOLDS_S {
                 let arc = arc(config, start, &near, command, hold_s, level);
                 if best.as_ref().is_none_or(|best| arc.cost < best.cost) {
@@ -77,9 +78,9 @@ pub(super) fn cheapest(config: &SteerConfig, start: &Start<'_>, obstacles: &[Obs
 }
 
 /// The climb that leads back to the wanted altitude.
-pub(super) fn hold_altitude(config: &SteerConfig, goal: &Goal) -> f64 {
-    let climb = config.climb_per_m * goal.too_low_m.unwrap_or(0.0);
-    climb.clamp(-config.max_climb_rad, config.max_climb_rad)
+pub(super) fn hold_altitude(params: &SteerParams, goal: &Goal) -> f64 {
+    let climb = params.climb_per_m * goal.too_low_m.unwrap_or(0.0);
+    climb.clamp(-params.max_climb_rad, params.max_climb_rad)
 }
 
 fn arc(
@@ -91,8 +92,9 @@ fn arc(
     level_rad: f64,
 ) -> Arc {
     let Moving { mut bank_rad, mut yaw_rad, mut climb_rad, speed_m_s } = start.moving;
-    let step_s = config.horizon_s / (PLACES * STEPS) as f64;
-    let delay_s = config.latency_s + config.lag_s;
+    let SteerConfig { params, aircraft } = config;
+    let step_s = params.horizon_s / (PLACES * STEPS) as f64;
+    let (delay_s, response) = (aircraft.delay_s(), &aircraft.response);
     let (mut at, mut danger) = (DVec3::ZERO, 0.0_f64);
     let mut path_ned_m = [DVec3::ZERO; PLACES];
     for (k, place) in path_ned_m.iter_mut().enumerate() {
@@ -105,10 +107,10 @@ fn arc(
             } else {
                 Command { bank_rad: 0.0, ..command }
             };
-            let rate = (wanted.bank_rad - bank_rad) / config.bank_time_s;
-            bank_rad += step_s * rate.clamp(-config.bank_rate_rad_s, config.bank_rate_rad_s);
+            let rate = (wanted.bank_rad - bank_rad) / response.bank_time_s;
+            bank_rad += step_s * rate.clamp(-response.bank_rate_rad_s, response.bank_rate_rad_s);
             yaw_rad += step_s * GRAVITY_M_S2 * bank_rad.tan() / speed_m_s;
-            climb_rad += step_s * (wanted.climb_rad - climb_rad) / config.climb_time_s;
+            climb_rad += step_s * (wanted.climb_rad - climb_rad) / response.climb_time_s;
             let (sin, cos) = yaw_rad.sin_cos();
             at += step_s
                 * speed_m_s
@@ -117,10 +119,10 @@ fn arc(
         *place = at;
         let time_s = ((k + 1) * STEPS) as f64 * step_s;
         let passage = near.passage(at);
-        let met = 1.0 / (1.0 + ((passage - 1.0) * config.radius_m / config.softness_m).exp());
-        danger = danger.max((-time_s / config.discount_s).exp() * met);
+        let met = 1.0 / (1.0 + ((passage - 1.0) * params.radius_m / params.softness_m).exp());
+        danger = danger.max((-time_s / params.discount_s).exp() * met);
     }
-    let weights = config.weights;
+    let weights = params.weights;
     let danger = weights.danger * danger;
     let cost = danger
         + weights.goal * (1.0 - (yaw_rad - start.goal.yaw_rad).cos())
@@ -144,9 +146,9 @@ struct Eight {
 const FAR: f32 = 10.0;
 
 impl Near {
-    fn new(config: &SteerConfig, speed_m_s: f64, obstacles: &[Obstacle]) -> Self {
-        let reach_m = speed_m_s * config.horizon_s;
-        let aside_m = |obstacle: &Obstacle| obstacle.radius_m + config.radius_m;
+    fn new(params: &SteerParams, speed_m_s: f64, obstacles: &[Obstacle]) -> Self {
+        let reach_m = speed_m_s * params.horizon_s;
+        let aside_m = |obstacle: &Obstacle| obstacle.radius_m + params.radius_m;
         let near: Vec<&Obstacle> = (obstacles.iter())
             .filter(|obstacle| obstacle.place_ned_m.length() < reach_m + 3.0 * aside_m(obstacle))
             .collect();
@@ -220,8 +222,9 @@ mod tests {
     /// What was commanded before leads on for as long as it acts, and the arc takes up there.
     #[test]
     fn earlier_commands_are_followed_while_they_act() {
-        let config = SteerConfig { latency_s: 0.1, lag_s: 0.3, ..SteerConfig::default() };
-        let near = Near::new(&config, 12.0, &[]);
+        let mut config = SteerConfig::default();
+        (config.aircraft.latency_s, config.aircraft.response.lag_s) = (0.1, 0.3);
+        let near = Near::new(&config.params, 12.0, &[]);
         let level = Command::default();
         let right = Command { bank_rad: 0.8, ..level };
         let path = |acting: &[(f64, Command)]| {
@@ -247,8 +250,14 @@ mod tests {
             })
             .collect();
         let arc = cheapest(&config, &start(0.0), &shell);
-        let straight =
-            super::arc(&config, &start(0.0), &Near::new(&config, 12.0, &shell), Command::default(), 1.0, 0.0);
+        let straight = super::arc(
+            &config,
+            &start(0.0),
+            &Near::new(&config.params, 12.0, &shell),
+            Command::default(),
+            1.0,
+            0.0,
+        );
         assert!(arc.danger > 1.0 && arc.danger < straight.danger, "{} {}", arc.danger, straight.danger);
     }
 
@@ -258,9 +267,10 @@ mod tests {
         for count in [0, 1, 7, 8, 9, 33] {
             let balls: Vec<Obstacle> = (0..count).map(|i| ball(5.0 + f64::from(i), 2.0, 0.3)).collect();
             let at = DVec3::new(3.0, 1.0, 0.5);
-            let each = balls.iter().map(|o| o.place_ned_m.distance(at) / (o.radius_m + config.radius_m));
+            let each =
+                balls.iter().map(|o| o.place_ned_m.distance(at) / (o.radius_m + config.params.radius_m));
             let expected = each.fold(f64::from(FAR), f64::min);
-            let found = Near::new(&config, 100.0, &balls).passage(at);
+            let found = Near::new(&config.params, 100.0, &balls).passage(at);
             assert!((found - expected).abs() < 1e-5, "{count}: {found} {expected}");
         }
     }

@@ -1,12 +1,11 @@
-//! What steering is made of and told.
+//! Configuration of steering.
 
-use glam::DMat3;
-
-use crate::camera::FRD_FROM_CAMERA;
-use crate::error::{Error, Result};
+use super::Aircraft;
+use crate::error::{Result, in_ranges};
 
 /// How a command is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Policy {
     /// Towards the goal, whatever is in the way.
     None,
@@ -27,6 +26,7 @@ pub enum Policy {
 
 /// What counts as near.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Danger {
     /// Half the positive divergence of the flow on the view sphere: it needs no direction of motion, and is the inverse of
     /// the time to contact straight ahead, but fades to the side and at round things.
@@ -38,29 +38,28 @@ pub enum Danger {
     Blend,
 }
 
-/// How the commands of steering come about. Angles are in radians, times in seconds.
-#[derive(Clone, Debug, PartialEq)]
+/// How the commands of steering come about: what is chosen, and what the aircraft is like. Angles are in radians, times in
+/// seconds.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteerConfig {
+    /// What is chosen.
+    pub params: SteerParams,
+    /// What the aircraft is like.
+    pub aircraft: Aircraft,
+}
+
+/// What is chosen of steering.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SteerParams {
     /// How a command is found.
     pub policy: Policy,
     /// What counts as near.
     pub danger: Danger,
-    /// How the camera is mounted: turns what is given in the camera's frame into the body's.
-    pub body_from_camera: DMat3,
     /// The steepest bank that is commanded, above 0 and below π/2.
     pub max_bank_rad: f64,
     /// The steepest climb and descent, 0 to π/4.
     pub max_climb_rad: f64,
-    /// With which time constant the aircraft takes a bank, above 0.
-    pub bank_time_s: f64,
-    /// How fast it rolls at most, above 0.
-    pub bank_rate_rad_s: f64,
-    /// With which time constant it takes a climb, above 0.
-    pub climb_time_s: f64,
-    /// From a frame's exposure until its command acts, 0 to 1.
-    pub latency_s: f64,
-    /// From then until the aircraft begins to follow, 0 to 1: what actuators and the inner loop are late by.
-    pub lag_s: f64,
     /// How far ahead arcs are looked at, above 0 and at most 10.
     pub horizon_s: f64,
     /// How far obstacles are to be passed: half the wing span and a margin, above 0.
@@ -93,6 +92,7 @@ pub struct SteerConfig {
 
 /// Weights of the terms of the cost, all 0 or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Weights {
     /// Of the worst passage of an obstacle.
     pub danger: f64,
@@ -108,6 +108,7 @@ pub struct Weights {
 
 /// What is done without a cue that can be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OnInvalid {
     /// For how long the last command is held.
     pub hold_s: f64,
@@ -115,20 +116,14 @@ pub struct OnInvalid {
     pub climb_rad: f64,
 }
 
-impl Default for SteerConfig {
-    /// For the simulator's airframe of 1.2 kg; how it rolls is fitted to its steps.
+impl Default for SteerParams {
+    /// For the simulator's airframe of 1.2 kg.
     fn default() -> Self {
         Self {
             policy: Policy::default(),
             danger: Danger::default(),
-            body_from_camera: FRD_FROM_CAMERA,
             max_bank_rad: 60_f64.to_radians(),
             max_climb_rad: 8_f64.to_radians(),
-            bank_time_s: 0.12,
-            bank_rate_rad_s: 115_f64.to_radians(),
-            climb_time_s: 0.4,
-            latency_s: 0.05,
-            lag_s: 0.09,
             horizon_s: 2.6,
             radius_m: 1.2,
             softness_m: 0.35,
@@ -147,7 +142,25 @@ impl Default for SteerConfig {
     }
 }
 
+impl From<SteerParams> for SteerConfig {
+    /// With the default [`Aircraft`].
+    fn from(params: SteerParams) -> Self {
+        Self { params, aircraft: Aircraft::default() }
+    }
+}
+
 impl SteerConfig {
+    /// Checks every parameter's range.
+    ///
+    /// # Errors
+    /// As [`SteerParams::validate`] and [`Aircraft::validate`].
+    pub fn validate(&self) -> Result<()> {
+        self.params.validate()?;
+        self.aircraft.validate()
+    }
+}
+
+impl SteerParams {
     /// Checks every parameter's range.
     ///
     /// # Errors
@@ -156,14 +169,9 @@ impl SteerConfig {
         let quarter = std::f64::consts::FRAC_PI_4;
         let Weights { danger, goal, change, bank, climb } = self.weights;
         let OnInvalid { hold_s, climb_rad } = self.on_invalid;
-        for (name, value, low, high) in [
+        in_ranges(&[
             ("max_bank_rad", self.max_bank_rad, 1e-3, 1.5),
             ("max_climb_rad", self.max_climb_rad, 0.0, quarter),
-            ("bank_time_s", self.bank_time_s, 1e-3, 10.0),
-            ("bank_rate_rad_s", self.bank_rate_rad_s, 1e-3, 100.0),
-            ("climb_time_s", self.climb_time_s, 1e-3, 10.0),
-            ("latency_s", self.latency_s, 0.0, 1.0),
-            ("lag_s", self.lag_s, 0.0, 1.0),
             ("horizon_s", self.horizon_s, 0.1, 10.0),
             ("radius_m", self.radius_m, 1e-3, 1e3),
             ("softness_m", self.softness_m, 1e-3, 1e3),
@@ -185,17 +193,7 @@ impl SteerConfig {
             ("climb_per_m", self.climb_per_m, 0.0, 10.0),
             ("on_invalid.hold_s", hold_s, 0.0, 60.0),
             ("on_invalid.climb_rad", climb_rad, -quarter, quarter),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
-            }
-        }
-        let m = self.body_from_camera;
-        let off = (m * m.transpose() - DMat3::IDENTITY).to_cols_array();
-        if !(off.iter().all(|e| e.abs() <= 1e-3) && m.determinant() > 0.0) {
-            return Err(Error::parameter("body_from_camera", m, "a rotation, of determinant 1"));
-        }
-        Ok(())
+        ])
     }
 
     /// The nearest command that is within the limits.

@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use super::{Danger, SteerConfig};
+use super::{Danger, SteerParams};
 use crate::sphere::{Grid, Sector, Sectors};
 
 /// Samples along each side of a sector of the map.
@@ -22,12 +22,12 @@ pub struct DangerMap {
 }
 
 impl DangerMap {
-    pub(super) fn new(config: &SteerConfig) -> Self {
-        let [azimuth, elevation] = config.map_half_rad;
+    pub(super) fn new(params: &SteerParams) -> Self {
+        let [azimuth, elevation] = params.map_half_rad;
         let count = |half: f64, pitch: f64| ((2.0 * half / pitch).round() as usize).max(1);
         let grid = Grid {
-            columns: count(azimuth, config.map_pitch_rad[0]),
-            rows: count(elevation, config.map_pitch_rad[1]),
+            columns: count(azimuth, params.map_pitch_rad[0]),
+            rows: count(elevation, params.map_pitch_rad[1]),
             azimuth_rad: [-azimuth, azimuth],
             elevation_rad: [elevation, -elevation],
         };
@@ -41,7 +41,7 @@ impl DangerMap {
     }
 
     /// Takes the sectors of a frame.
-    pub(super) fn update(&mut self, config: &SteerConfig, sectors: &Sectors, camera_from_level: &DMat3) {
+    pub(super) fn update(&mut self, params: &SteerParams, sectors: &Sectors, camera_from_level: &DMat3) {
         for at in 0..self.grid.len() {
             let (column, row) = (at % self.grid.columns, at / self.grid.columns);
             let [middle, pitch] = [self.grid.angles_rad(column, row), self.grid.pitch_rad()];
@@ -56,16 +56,16 @@ impl DangerMap {
                     let bearing = *camera_from_level * crate::sphere::bearing(angles);
                     let Some([column, row]) = sectors.grid.sector(bearing) else { continue };
                     let sector = sectors.get(column, row);
-                    if !(sector.coverage >= config.least_coverage && sector.is_known()) {
+                    if !(sector.coverage >= params.least_coverage && sector.is_known()) {
                         continue;
                     }
                     known += 1;
-                    rate = rate.max(rate_hz(config.danger, sector));
+                    rate = rate.max(rate_hz(params.danger, sector));
                 }
             }
             self.known[at] = f64::from(known) / f64::from(SAMPLES[0] * SAMPLES[1]);
             // What cannot be seen has nothing near that could be told: the sky, and what is far away.
-            self.rates_hz[at] += config.smoothing * (rate - self.rates_hz[at]);
+            self.rates_hz[at] += params.smoothing * (rate - self.rates_hz[at]);
         }
     }
 }

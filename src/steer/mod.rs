@@ -9,6 +9,7 @@
 //! A frame's sectors become a [`DangerMap`], levelled with the horizon and along the direction of motion; its sectors
 //! become balls at the distance that the airspeed gives their time to contact; and the balls are what is to be passed.
 
+mod aircraft;
 mod arc;
 mod command;
 mod config;
@@ -19,9 +20,10 @@ mod obstacles;
 mod simple;
 mod steering;
 
+pub use aircraft::{Aircraft, Response};
 pub use arc::Arc;
 pub use command::Command;
-pub use config::{Danger, OnInvalid, Policy, SteerConfig, Weights};
+pub use config::{Danger, OnInvalid, Policy, SteerConfig, SteerParams, Weights};
 pub use map::DangerMap;
 pub use observation::{Goal, Observation, View};
 pub use obstacles::Obstacle;

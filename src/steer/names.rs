@@ -1,10 +1,7 @@
 //! Policies and dangers as text.
 
-use std::fmt;
-use std::str::FromStr;
-
 use super::{Danger, Policy};
-use crate::error::{Error, Result};
+use crate::named::named;
 
 impl Policy {
     /// All of them, the simplest first.
@@ -36,37 +33,8 @@ impl Danger {
     }
 }
 
-impl fmt::Display for Policy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl fmt::Display for Danger {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Policy {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let known = || Self::ALL.map(Self::name).join(", ");
-        let of_name = Self::ALL.into_iter().find(|policy| policy.name() == text);
-        of_name.ok_or_else(|| Error::parameter("policy", format_args!("{text:?}"), known()))
-    }
-}
-
-impl FromStr for Danger {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let known = || Self::ALL.map(Self::name).join(", ");
-        let of_name = Self::ALL.into_iter().find(|danger| danger.name() == text);
-        of_name.ok_or_else(|| Error::parameter("danger", format_args!("{text:?}"), known()))
-    }
-}
+named!(Policy, "policy");
+named!(Danger, "danger");
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::SteerConfig;
+use super::Aircraft;
 use crate::camera::{FRD_FROM_CAMERA, roll_pitch_yaw_rad};
 use crate::pipeline::Cue;
 use crate::sphere::{Heading, Sectors};
@@ -65,9 +65,9 @@ pub(super) struct Moving {
 const KNOWN_RAD: f64 = 0.1;
 
 impl Moving {
-    pub(super) fn of(config: &SteerConfig, o: &Observation<'_>) -> Self {
+    pub(super) fn of(aircraft: &Aircraft, o: &Observation<'_>) -> Self {
         let seen = o.view.map(|view| view.heading).filter(|heading| heading.error_rad <= KNOWN_RAD);
-        let body = o.motion_body.or(seen.map(|heading| config.body_from_camera * heading.direction));
+        let body = o.motion_body.or(seen.map(|heading| aircraft.body_from_camera * heading.direction));
         // Where nothing is known it moves the way its nose points.
         let motion = o.ned_from_body * body.filter(|motion| motion.x > 0.0).unwrap_or(DVec3::X);
         Self {

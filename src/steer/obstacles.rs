@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DVec3};
 
-use super::{DangerMap, SteerConfig};
+use super::{DangerMap, SteerParams};
 use crate::sphere::Grid;
 
 /// A ball that is to be passed.
@@ -43,7 +43,7 @@ impl Obstacles {
     /// Takes what a frame shows. What was known before is remembered where the frame does not look.
     pub(super) fn see(
         &mut self,
-        config: &SteerConfig,
+        params: &SteerParams,
         map: &DangerMap,
         frame: ViewGeometry<'_>,
         [before_s, now_s]: [f64; 2],
@@ -51,20 +51,20 @@ impl Obstacles {
         let mut remembered = Vec::new();
         for (i, obstacle) in self.all.iter().enumerate() {
             let seen_s = if i < self.in_view { before_s } else { self.seen_s[i - self.in_view] };
-            if now_s - seen_s <= config.memory_s && !frame.shows(obstacle) {
+            if now_s - seen_s <= params.memory_s && !frame.shows(obstacle) {
                 remembered.push((*obstacle, seen_s));
             }
         }
         self.all.clear();
         for (at, rate) in map.rates_hz.iter().enumerate() {
-            if !(*rate >= config.least_rate_hz && map.known[at] > 0.0) {
+            if !(*rate >= params.least_rate_hz && map.known[at] > 0.0) {
                 continue;
             }
             let distance_m = frame.speed_m_s / rate;
             let bearing = map.grid.bearing(at % map.grid.columns, at / map.grid.columns);
             self.all.push(Obstacle {
                 place_ned_m: *frame.ned_from_level * bearing * distance_m,
-                radius_m: distance_m * config.half_width_rad.tan(),
+                radius_m: distance_m * params.half_width_rad.tan(),
             });
         }
         self.in_view = self.all.len();

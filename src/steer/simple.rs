@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::arc::hold_altitude;
 use super::observation::{Moving, View};
 use super::obstacles::Obstacle;
-use super::{Command, Goal, SteerConfig};
+use super::{Command, Goal, SteerParams};
 use crate::sphere::angles_rad;
 
 /// Bank for a radian between the path and the goal.
@@ -23,13 +23,13 @@ const HEADINGS: i32 = 18;
 const HEADING_STEP_RAD: f64 = 0.0524;
 
 /// Towards the goal.
-pub(super) fn none(config: &SteerConfig, moving: &Moving, goal: &Goal) -> Command {
-    Command { bank_rad: GOAL_GAIN * off_goal(moving, goal), climb_rad: hold_altitude(config, goal) }
+pub(super) fn none(params: &SteerParams, moving: &Moving, goal: &Goal) -> Command {
+    Command { bank_rad: GOAL_GAIN * off_goal(moving, goal), climb_rad: hold_altitude(params, goal) }
 }
 
 /// Away from the side where the flow is faster.
 pub(super) fn balance(
-    config: &SteerConfig,
+    params: &SteerParams,
     moving: &Moving,
     goal: &Goal,
     view: &View<'_>,
@@ -48,7 +48,7 @@ pub(super) fn balance(
     }
     let [left, right] = sides.map(|(sum, weight)| if weight > 0.0 { sum / weight } else { 0.0 });
     let bank_rad = BALANCE_GAIN * (left - right) + GOAL_GAIN * off_goal(moving, goal);
-    Command { bank_rad, climb_rad: hold_altitude(config, goal) }
+    Command { bank_rad, climb_rad: hold_altitude(params, goal) }
 }
 
 /// The frame of a camera that is held level and looks along the motion.
@@ -59,7 +59,7 @@ pub(super) struct Level {
 
 /// Along the sum of a force towards the goal and of one away from every obstacle.
 pub(super) fn potential(
-    config: &SteerConfig,
+    params: &SteerParams,
     moving: &Moving,
     goal: &Goal,
     obstacles: &[Obstacle],
@@ -68,7 +68,7 @@ pub(super) fn potential(
     let reach_m = REACH_S * moving.speed_m_s;
     let mut force = DVec3::new(goal.yaw_rad.cos(), goal.yaw_rad.sin(), 0.0);
     for obstacle in obstacles {
-        let distance_m = obstacle.place_ned_m.length().max(config.radius_m);
+        let distance_m = obstacle.place_ned_m.length().max(params.radius_m);
         let share = (reach_m / distance_m - 1.0).max(0.0);
         force -= FORCE * share * share * obstacle.place_ned_m.normalize_or_zero();
     }
@@ -76,13 +76,13 @@ pub(super) fn potential(
     // A fixed wing cannot go back, however hard it is pushed: what counts is to which side.
     let ahead = there.z.max(0.5);
     let [azimuth, elevation] = [there.x.atan2(ahead), (-there.y).atan2(there.x.hypot(ahead))];
-    let climb_rad = if obstacles.is_empty() { hold_altitude(config, goal) } else { elevation };
+    let climb_rad = if obstacles.is_empty() { hold_altitude(params, goal) } else { elevation };
     Command { bank_rad: bank_for(moving, azimuth), climb_rad }
 }
 
 /// The cheapest heading.
 pub(super) fn heading(
-    config: &SteerConfig,
+    params: &SteerParams,
     moving: &Moving,
     goal: &Goal,
     obstacles: &[Obstacle],
@@ -95,7 +95,7 @@ pub(super) fn heading(
             let distance_m = obstacle.place_ned_m.length();
             let rate_hz = moving.speed_m_s / distance_m;
             let aside = ((y.atan2(x) - yaw).sin()).asin().abs();
-            let wide = (config.radius_m / distance_m).min(1.0).asin() + config.half_width_rad;
+            let wide = (params.radius_m / distance_m).min(1.0).asin() + params.half_width_rad;
             let ahead = x * yaw.cos() + y * yaw.sin() > 0.0;
             // From certain to touch to half as far again.
             let share = if ahead { ((1.5 * wide - aside) / (0.5 * wide)).clamp(0.0, 1.0) } else { 0.0 };
@@ -109,7 +109,7 @@ pub(super) fn heading(
     let headings = (-HEADINGS..=HEADINGS).map(|i| HEADING_STEP_RAD * f64::from(i));
     let best = headings.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0.0);
     *last_rad = best;
-    Command { bank_rad: bank_for(moving, best), climb_rad: hold_altitude(config, goal) }
+    Command { bank_rad: bank_for(moving, best), climb_rad: hold_altitude(params, goal) }
 }
 
 /// The bank that turns by an angle in two fifths of a second, were it there at once.

@@ -59,7 +59,7 @@ impl Steering {
     pub fn new(config: SteerConfig) -> Result<Self> {
         config.validate()?;
         Ok(Self {
-            map: DangerMap::new(&config),
+            map: DangerMap::new(&config.params),
             obstacles: Obstacles::default(),
             arc: None,
             last: Command::default(),
@@ -122,9 +122,9 @@ impl Steering {
     }
 
     fn steer(&mut self, o: &Observation<'_>, view: &View<'_>) -> Decision {
-        let moving = Moving::of(&self.config, o);
+        let moving = Moving::of(&self.config.aircraft, o);
         let ned_from_level = moving.ned_from_level();
-        let ned_from_camera = o.ned_from_body * self.config.body_from_camera;
+        let ned_from_camera = o.ned_from_body * self.config.aircraft.body_from_camera;
         let camera_from_ned = ned_from_camera.transpose();
         let velocity = o.airspeed_m_s
             * DVec3::new(
@@ -140,37 +140,39 @@ impl Steering {
             _ => o.time_s,
         };
         self.before = Some((o.time_s, velocity));
-        self.map.update(&self.config, view.sectors, &(camera_from_ned * ned_from_level));
+        self.map.update(&self.config.params, view.sectors, &(camera_from_ned * ned_from_level));
         let frame = ViewGeometry {
             ned_from_level: &ned_from_level,
             camera_from_ned: &camera_from_ned,
             grid: &view.sectors.grid,
             speed_m_s: o.airspeed_m_s,
         };
-        self.obstacles.see(&self.config, &self.map, frame, [before_s, o.time_s]);
+        self.obstacles.see(&self.config.params, &self.map, frame, [before_s, o.time_s]);
         self.seen_s = Some(o.time_s);
         let level =
             Level { from_camera: ned_from_level.transpose() * ned_from_camera, ned_from: ned_from_level };
-        let (config, goal, obstacles) = (&self.config, &o.goal, self.obstacles.all());
+        let (params, goal, obstacles) = (&self.config.params, &o.goal, self.obstacles.all());
         self.arc = None;
-        let command = match config.policy {
-            Policy::None => simple::none(config, &moving, goal),
-            Policy::Balance => simple::balance(config, &moving, goal, view, &level),
-            Policy::Potential => simple::potential(config, &moving, goal, obstacles, &level),
-            Policy::Heading => simple::heading(config, &moving, goal, obstacles, &mut self.last_heading_rad),
+        let command = match params.policy {
+            Policy::None => simple::none(params, &moving, goal),
+            Policy::Balance => simple::balance(params, &moving, goal, view, &level),
+            Policy::Potential => simple::potential(params, &moving, goal, obstacles, &level),
+            Policy::Heading => simple::heading(params, &moving, goal, obstacles, &mut self.last_heading_rad),
             Policy::Arc => {
                 let start = arc::Start { moving, goal: *goal, last: self.last, acting: &self.acting };
-                self.arc.insert(arc::cheapest(config, &start, obstacles)).command
+                self.arc.insert(arc::cheapest(&self.config, &start, obstacles)).command
             }
         };
-        let danger =
-            self.arc.as_ref().map(|arc| arc.danger / self.config.weights.danger.max(f64::MIN_POSITIVE));
-        Decision { command: self.config.limited(command), source: Source::Cue, danger }
+        let danger = self
+            .arc
+            .as_ref()
+            .map(|arc| arc.danger / self.config.params.weights.danger.max(f64::MIN_POSITIVE));
+        Decision { command: self.config.params.limited(command), source: Source::Cue, danger }
     }
 
     /// What acts from now on until a new command does.
     fn look_back(&mut self, time_s: f64) {
-        let delay_s = self.config.latency_s + self.config.lag_s;
+        let delay_s = self.config.aircraft.delay_s();
         // Where times went back, what was given since makes no sense.
         while self.given.back().is_some_and(|(given_s, _)| *given_s >= time_s) {
             self.given.pop_back();
@@ -188,12 +190,12 @@ impl Steering {
     fn without_cue(&mut self, time_s: f64) -> Decision {
         self.arc = None;
         let since = self.seen_s.map_or(f64::INFINITY, |seen_s| time_s - seen_s);
-        let on_invalid = self.config.on_invalid;
+        let on_invalid = self.config.params.on_invalid;
         let (command, source) = if since <= on_invalid.hold_s {
             (self.last, Source::Held)
         } else {
             (Command { bank_rad: 0.0, climb_rad: on_invalid.climb_rad }, Source::Recovery)
         };
-        Decision { command: self.config.limited(command), source, danger: None }
+        Decision { command: self.config.params.limited(command), source, danger: None }
     }
 }

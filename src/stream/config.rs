@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 
 /// What a stream does when the GPU is lost and cannot be reopened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum OnLoss {
     /// Every further call is [`Error::DeviceLost`].
     #[default]
@@ -16,6 +17,7 @@ pub enum OnLoss {
 
 /// How a stream of frames is run, whatever is computed of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StreamConfig {
     /// Frames that may be submitted and not yet taken, 1 to 8.
     pub in_flight: usize,

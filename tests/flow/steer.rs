@@ -4,7 +4,9 @@ use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, FRD_FROM_CAMERA, Lens, world_from_body};
 use viewsphere::frame::Size;
 use viewsphere::sphere::{Grid, Heading, Sectors};
-use viewsphere::steer::{Danger, Goal, Observation, Policy, Source, SteerConfig, Steering, View};
+use viewsphere::steer::{
+    Danger, Goal, Observation, Policy, Source, SteerConfig, SteerParams, Steering, View,
+};
 
 const SPEED_M_S: f64 = 12.0;
 
@@ -49,7 +51,7 @@ fn observation<'a>(time_s: f64, attitude: DMat3, sectors: Option<&'a Sectors>) -
 }
 
 fn steering(policy: Policy, danger: Danger) -> Steering {
-    Steering::new(SteerConfig { policy, danger, ..SteerConfig::default() }).unwrap()
+    Steering::new(SteerParams { policy, danger, ..SteerParams::default() }.into()).unwrap()
 }
 
 /// Something large ahead, more of it to the right (1) or to the left (−1).
@@ -127,8 +129,8 @@ fn the_map_is_level_whatever_the_bank() {
 #[test]
 fn what_has_left_the_view_is_remembered_for_a_while() {
     // What a map keeps of the frame before stays where it was ahead; so sudden a turn would carry it along.
-    let config = SteerConfig { smoothing: 1.0, ..SteerConfig::default() };
-    let mut steering = Steering::new(config).unwrap();
+    let params = SteerParams { smoothing: 1.0, ..SteerParams::default() };
+    let mut steering = Steering::new(params.into()).unwrap();
     let seen = view(&[(DVec3::new(7.0, 0.0, 10.0), 1.5)]);
     steering.update(&observation(0.0, DMat3::IDENTITY, Some(&seen)));
     let before = steering.obstacles().len();
@@ -147,8 +149,8 @@ fn what_has_left_the_view_is_remembered_for_a_while() {
 
 #[test]
 fn without_a_cue_it_holds_and_then_levels_and_climbs() {
-    let config = SteerConfig::default();
-    let mut steering = Steering::new(config.clone()).unwrap();
+    let config = SteerParams::default();
+    let mut steering = Steering::new(config.clone().into()).unwrap();
     let none = steering.update(&observation(0.0, DMat3::IDENTITY, None));
     assert_eq!(none.source, Source::Recovery);
     let sectors = view(&ahead(1.0));
@@ -189,9 +191,9 @@ fn what_is_not_a_number_is_no_cue_and_no_command() {
 
 #[test]
 fn limits_hold_and_parameters_are_checked() {
-    let config = SteerConfig { max_bank_rad: 0.3, ..SteerConfig::default() };
+    let config = SteerParams { max_bank_rad: 0.3, ..SteerParams::default() };
     for policy in [Policy::None, Policy::Balance, Policy::Potential, Policy::Heading, Policy::Arc] {
-        let mut steering = Steering::new(SteerConfig { policy, ..config.clone() }).unwrap();
+        let mut steering = Steering::new(SteerParams { policy, ..config.clone() }.into()).unwrap();
         let sectors = view(&[(DVec3::new(1.0, 0.0, 4.0), 2.5)]);
         let command = steering.update(&observation(0.0, DMat3::IDENTITY, Some(&sectors))).command;
         assert!(
@@ -199,12 +201,17 @@ fn limits_hold_and_parameters_are_checked() {
             "{policy:?}"
         );
     }
-    let good = SteerConfig::default();
+    let wrong = |change: fn(&mut SteerConfig)| {
+        let mut config = SteerConfig::default();
+        change(&mut config);
+        config
+    };
     for (name, config) in [
-        ("max_bank_rad", SteerConfig { max_bank_rad: 2.0, ..good.clone() }),
-        ("latency_s", SteerConfig { latency_s: -0.1, ..good.clone() }),
-        ("smoothing", SteerConfig { smoothing: f64::NAN, ..good.clone() }),
-        ("body_from_camera", SteerConfig { body_from_camera: 2.0 * DMat3::IDENTITY, ..good.clone() }),
+        ("max_bank_rad", wrong(|config| config.params.max_bank_rad = 2.0)),
+        ("latency_s", wrong(|config| config.aircraft.latency_s = -0.1)),
+        ("lag_s", wrong(|config| config.aircraft.response.lag_s = f64::INFINITY)),
+        ("smoothing", wrong(|config| config.params.smoothing = f64::NAN)),
+        ("body_from_camera", wrong(|config| config.aircraft.body_from_camera = 2.0 * DMat3::IDENTITY)),
     ] {
         let error = Steering::new(config).unwrap_err().to_string();
         assert!(error.contains(name) && !error.contains('\n'), "{error}");

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::measure::timed;
 use crate::error::Result;
 use crate::gpu::Gpu;
+use crate::quantile::median;
 
 const ROUNDS: usize = 9;
 /// Bytes to copy in a round, so that it takes much longer than to begin it.
@@ -65,7 +66,6 @@ fn copies(len: usize) -> usize {
 }
 
 /// From the median round.
-fn rate(len: usize, copies: usize, mut ms: Vec<f64>) -> f64 {
-    ms.sort_by(f64::total_cmp);
-    (2 * 4 * len * copies) as f64 / ms[ms.len() / 2] / 1e6
+fn rate(len: usize, copies: usize, ms: Vec<f64>) -> f64 {
+    (2 * 4 * len * copies) as f64 / median(ms).unwrap_or(f64::NAN) / 1e6
 }

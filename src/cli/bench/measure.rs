@@ -13,6 +13,7 @@ use crate::eval::Scene;
 use crate::flow::{self, Algorithm};
 use crate::frame::{Image, Size};
 use crate::plan::{BufId, Plan};
+use crate::quantile::{nearest_rank, sorted};
 use crate::stream::{StreamConfig, TimeSource};
 
 /// Frames of the made-up scene, played forth and back.
@@ -203,11 +204,10 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 impl Times {
-    pub(super) fn new(mut ms: Vec<f64>) -> Self {
-        ms.sort_by(f64::total_cmp);
-        // The nearest rank.
-        let rank = |percent: usize| ms[(ms.len() * percent).div_ceil(100).max(1) - 1];
-        Self { median: rank(50), p99: rank(99), min: rank(0) }
+    pub(super) fn new(ms: Vec<f64>) -> Self {
+        let ms = sorted(ms);
+        let rank = |thousandths| nearest_rank(&ms, thousandths).unwrap_or(f64::NAN);
+        Self { median: rank(500), p99: rank(990), min: rank(0) }
     }
 }
 

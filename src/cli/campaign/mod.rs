@@ -166,7 +166,7 @@ impl Campaign {
         plan.validate(&backend).map_err(|error| named_by_flags(error, &flags))?;
         input::folder(&self.output)?;
         let path = self.output.join(RESULTS);
-        let configuration = Configuration::new(&plan.base, self.setup.text());
+        let configuration = Configuration::new(&plan.base, self.setup.text())?;
         let Opened { mut journal, mut results, repaired } = Journal::open(&path, &configuration)?;
         if repaired {
             print::note(format_args!("{}: dropped a half-written line at its end", path.display()));

@@ -11,6 +11,7 @@ use crate::gpu::Gpu;
 use crate::kernel::Bound;
 use crate::kernels::compare::{Difference, POISON, compare};
 use crate::plan::{BufId, Content, Given, Outputs, Plan, Shape, Step, Value};
+use crate::quantile::nearest_rank;
 use crate::runner::Runner;
 use crate::sphere::{Heading, Motion};
 
@@ -243,9 +244,8 @@ impl StepFigures {
 impl Own {
     fn of(mut bounds: Vec<f32>) -> Option<Self> {
         bounds.sort_unstable_by(f32::total_cmp);
-        let count = bounds.len();
-        let max = *bounds.last()?;
-        Some(Self { median: bounds[(count - 1) / 2], p999: bounds[(count * 999).div_ceil(1000) - 1], max })
+        let rank = |thousandths| nearest_rank(&bounds, thousandths);
+        Some(Self { median: rank(500)?, p999: rank(999)?, max: rank(1000)? })
     }
 }
 

@@ -8,6 +8,7 @@ use crate::cli::print;
 use crate::error::Result;
 use crate::sim::Course;
 use crate::sim::campaign::{Faults, fingerprint};
+use crate::sim::course::file;
 use crate::sim::flight::{FRAME_S, Flight, Record, Summary};
 use crate::sphere::ExtraOutputs;
 use crate::steer::{Command, Source};
@@ -101,7 +102,7 @@ pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[Stri
     (flown.measure, flown.pipeline.fields) = (false, ExtraOutputs::default());
     print::one_line(&Header {
         viewsphere: env!("CARGO_PKG_VERSION"),
-        fingerprint: fingerprint(&(&flown, course)),
+        fingerprint: fingerprint(&(&flown, file::encode(course)?))?,
         backends,
         world: &course.name,
         seed: course.seed,

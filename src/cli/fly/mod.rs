@@ -3,37 +3,35 @@
 mod cues;
 mod log;
 mod measured;
+mod outputs;
+mod recorder;
 pub(super) mod setup;
 mod timing;
 mod video;
 
-use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use self::log::End;
-use self::measured::{MeasureArgs, PICTURE, Picture};
+use self::measured::MeasureArgs;
+use self::outputs::{FILES, Flown, VIDEO};
+use self::recorder::Recorder;
 use self::setup::SetupArgs;
-use self::timing::Costs;
 use self::video::Video;
 use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::{Outcome, input, print};
 use crate::backend::Backend;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::Size;
-use crate::io::{remove, write_atomic, write_bytes};
-use crate::report::flight::{FlightReport, FlightVideo};
+use crate::io::{remove, write_atomic};
+use crate::report::flight::FlightVideo;
 use crate::sim::campaign::Faults;
 use crate::sim::course::file;
-use crate::sim::flight::{
-    self, FRAME_S, Fault, Flight, FlightConfig, FlightFrame, MAX_LATENCY_FRAMES, Record, Sensor, Summary,
-};
+use crate::sim::flight::{self, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, Sensor, Summary};
 use crate::sim::{Course, CourseKind};
-use crate::steer::{Danger, Policy, SteerConfig};
+use crate::steer::{Danger, Policy, SteerParams};
 
 /// Fly through a made-up world on what the view says, and write down how that went.
 ///
@@ -134,23 +132,6 @@ pub(super) struct Fly {
     backend: BackendArgs,
 }
 
-/// The files of a flight.
-const LOG: &str = "flight.jsonl";
-const TIMING: &str = "timing.json";
-const PAGE: &str = "report.html";
-const VIDEO: &str = "flight.y4m";
-const FILES: [&str; 5] = [LOG, TIMING, PAGE, VIDEO, PICTURE];
-
-/// What is kept while it flies.
-struct Recorder {
-    records: Vec<Record>,
-    costs: Costs,
-    picture: Option<Picture>,
-    bar: ProgressBar,
-    /// Whether a line a second is said where there is no bar.
-    talks: bool,
-}
-
 impl Fly {
     pub(super) fn run(&self) -> Result<Outcome> {
         let config = self.config();
@@ -160,7 +141,7 @@ impl Fly {
         self.backend.check()?;
         let course = self.course()?;
         input::folder(&self.output)?;
-        self.spare()?;
+        outputs::spare(&self.output)?;
         let backends = match config.sensor {
             Sensor::Images => self.backend.open_pair(self.quiet)?,
             _ => [Backend::Cpu, Backend::Cpu],
@@ -169,36 +150,24 @@ impl Fly {
         let names = (config.sensor == Sensor::Images).then(|| backends.each_ref().map(Backend::name));
         let mut flight = Flight::new(backends, &course, &config)?;
         let drawing = if self.no_video { None } else { Some(FlightVideo::new(&flight)?) };
-        let mut recorder = Recorder {
-            records: Vec::new(),
-            costs: Costs::default(),
-            picture: self.measure.picture(&flight)?,
-            bar: if self.quiet { ProgressBar::hidden() } else { progress(&course) },
-            talks: !self.quiet,
-        };
+        let mut recorder = Recorder::new(&course, self.measure.picture(&flight)?, self.quiet);
         let flown = input::within(&self.output, || {
             if let Some(path) = &self.save_world {
                 file::write(path, &course)?;
             }
             self.fly(&mut flight, &mut recorder, drawing)
         });
-        recorder.bar.finish_and_clear();
-        self.finish(&flight, &recorder, &flown?, names)
-    }
-
-    /// Checks that the files which would be replaced are those of a flight.
-    fn spare(&self) -> Result<()> {
-        let begins = |line: String| line.starts_with("{\"viewsphere\":");
-        let log = File::open(self.output.join(LOG)).map(BufReader::new);
-        let flown = log.is_ok_and(|log| log.lines().next().is_some_and(|line| line.is_ok_and(begins)));
-        let there = FILES.map(|name| self.output.join(name)).into_iter().find(|path| path.is_file());
-        match there {
-            Some(path) if !flown => {
-                let expected = "a folder without it, or one with the flight.jsonl of an earlier flight";
-                Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
+        recorder.finish();
+        let summary = flown?;
+        let flown = Flown { flight: &flight, recorder: &recorder, summary: &summary, names };
+        let told = flown.write(&self.output, &self.setup)?;
+        if self.json { print::json(&End::from(&summary)) } else { print::text(&told) }?;
+        Ok(match summary.outcome {
+            flight::Outcome::Reached => Outcome::Done,
+            flight::Outcome::Crashed | flight::Outcome::LeftBand | flight::Outcome::TimedOut => {
+                Outcome::CheckFailed
             }
-            _ => Ok(()),
-        }
+        })
     }
 
     fn course(&self) -> Result<Course> {
@@ -236,7 +205,7 @@ impl Fly {
             speed_m_s: self.speed,
             sensor: if self.truth_flow { Sensor::Flow } else { self.sensor },
             camera: flight::camera(self.size),
-            steer: SteerConfig { policy: self.policy, danger: self.danger, ..SteerConfig::default() },
+            steer: SteerParams { policy: self.policy, danger: self.danger, ..SteerParams::default() },
             latency_frames: self.latency_frames,
             faults: self.faults.clone(),
             measure: self.measure.measure,
@@ -246,144 +215,9 @@ impl Fly {
         config.pipeline.read_flow = !self.no_video;
         config
     }
-
-    /// Writes what was kept, and says how it ended.
-    fn finish(
-        &self,
-        flight: &Flight,
-        recorder: &Recorder,
-        summary: &Summary,
-        names: Option<[String; 2]>,
-    ) -> Result<Outcome> {
-        let Recorder { records, costs, .. } = recorder;
-        let end = End::from(summary);
-        let mut lines = vec![log::header(flight, &self.setup, names.as_ref())?];
-        for record in records {
-            lines.push(log::frame(record)?);
-        }
-        lines.push(print::one_line(&end)?);
-        let page = FlightReport {
-            course: flight.course(),
-            config: flight.config(),
-            backend: &computed_on(names.as_ref()),
-            records,
-            summary,
-            costs: costs.frames(),
-        };
-        let timing = costs.timing(names);
-        let texts = [lines.join("\n") + "\n", print::one_line(&timing)? + "\n", page.html()];
-        for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
-            write_bytes(self.output.join(name), text.as_bytes())?;
-        }
-        // That of an earlier flight would be taken for this one's.
-        remove(self.output.join(PICTURE))?;
-        let picture = recorder.picture.as_ref().map(|picture| picture.write(&self.output)).transpose()?;
-        if self.json {
-            print::json(&end)?;
-        } else {
-            let video = fs::metadata(self.output.join(VIDEO));
-            let video = video
-                .map_or(String::new(), |file| format!(", and a video of {:.0} MB", 1e-6 * file.len() as f64));
-            print::text(&format!(
-                "outcome    {} after {:.1} s and {:.0} m\n\
-                 clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
-                 way        {:.1} m flown, {:.1} % of it towards the goal\n\
-                 control    {:.1} °/s of roll (root mean square)\n\
-                 cues       {}\n\
-                 speed      {}\n\
-                 log        in {}{video}",
-                summary.outcome,
-                summary.time_s,
-                shown(summary.progress_m),
-                summary.least_clearance_m,
-                summary.low_clearance_m,
-                summary.path_m,
-                100.0 * summary.efficiency(),
-                summary.roll_rate_rad_s.to_degrees(),
-                cues::text(summary.invalid, records.iter().filter_map(|record| record.invalid.as_deref())),
-                timing.text(),
-                self.output.display(),
-            ))?;
-            if let Some(text) = measured::text(summary.measured.as_ref(), picture) {
-                print::text(&text)?;
-            }
-        }
-        Ok(match summary.outcome {
-            flight::Outcome::Reached => Outcome::Done,
-            flight::Outcome::Crashed | flight::Outcome::LeftBand | flight::Outcome::TimedOut => {
-                Outcome::CheckFailed
-            }
-        })
-    }
-}
-
-impl Recorder {
-    /// Flies to the end and keeps every frame.
-    fn fly(&mut self, flight: &mut Flight, mut video: Option<&mut Video<'_>>) -> Result<Summary> {
-        loop {
-            let ended = flight.step(|seen| {
-                self.add(seen);
-                video.as_mut().map_or(Ok(()), |video| video.add(seen))
-            })?;
-            self.costs.add(flight.cost());
-            if let Some(summary) = ended {
-                return Ok(summary);
-            }
-        }
-    }
-
-    fn add(&mut self, seen: &FlightFrame<'_>) {
-        self.records.push(seen.record.clone());
-        if let Some(picture) = &mut self.picture {
-            picture.add(seen);
-        }
-        if let Some(cue) = seen.cue {
-            self.costs.add_latency(cue.latency);
-        }
-        self.say(seen.record);
-    }
-
-    /// A bar where there is a terminal, else a line for each second of flight.
-    fn say(&self, record: &Record) {
-        let state = match &record.invalid {
-            Some(why) => format!("no cue: {why}"),
-            None => match record.contact_s {
-                Some(contact_s) => format!("contact in {contact_s:.1} s"),
-                None => "nothing ahead".to_owned(),
-            },
-        };
-        if !self.bar.is_hidden() {
-            self.bar.set_position(record.progress_m.max(0.0) as u64);
-            self.bar.set_message(state);
-        } else if self.talks && (record.time_s % 1.0) < 0.5 * FRAME_S {
-            print::note(format_args!(
-                "{:.0} s, {:.0} m on the way, {:.1} m clear, bank {:+.0}°, {state}",
-                record.time_s,
-                shown(record.progress_m),
-                record.clearance_m,
-                shown(record.roll_pitch_yaw_rad[0].to_degrees()),
-            ));
-        }
-    }
 }
 
 /// A value that is shown without decimals; 0 has no sign.
 fn shown(value: f64) -> f64 {
     value.round() + 0.0
-}
-
-/// What computed, for the reader; without pictures nothing but the CPU does.
-fn computed_on(names: Option<&[String; 2]>) -> String {
-    match names {
-        None => Backend::Cpu.name(),
-        Some([renderer, flow]) if renderer == flow => flow.clone(),
-        Some([renderer, flow]) => format!("{flow}, pictures on {renderer}"),
-    }
-}
-
-/// A bar over the metres of the way, on standard error where that is a terminal.
-fn progress(course: &Course) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} m, {elapsed}, {msg}");
-    ProgressBar::new(course.length_m.ceil() as u64)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
+use crate::quantile::{above_share, sorted};
 use crate::sim::flight::Cost;
 
 /// From frame to frame at 30 Hz.
@@ -84,9 +85,8 @@ impl Spread {
     const NONE: Self = Self { median: 0.0, p99: 0.0 };
 
     fn of(times: impl Iterator<Item = Duration>) -> Option<Self> {
-        let mut sorted: Vec<f64> = times.map(milliseconds).collect();
-        sorted.sort_by(f64::total_cmp);
-        let at = |share: f64| sorted.get((sorted.len().max(1) as f64 * share) as usize).copied();
+        let sorted = sorted(times.map(milliseconds));
+        let at = |share| above_share(&sorted, share);
         Some(Self { median: at(0.5)?, p99: at(0.99)? })
     }
 }

@@ -16,6 +16,7 @@ use crate::plan::{BufId, Bufs, Step};
 
 /// The window over which a pixel's neighbours are taken to move alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Window {
     /// All neighbours count the same.
     Box,
@@ -25,6 +26,7 @@ pub enum Window {
 
 /// What an iteration's window averages, with the flow so far d, Δb = −½ (b2(x + d) − b1(x)), and A the mean of both frames'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Update {
     /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as Farnebäck and OpenCV do. Where the flow changes within the window, what has
     /// the most contrast decides.
@@ -39,6 +41,7 @@ pub enum Update {
 
 /// What a pixel counts for whose place, where the flow so far leads, is outside the second frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Outside {
     /// The first frame's expansion stands alone, with half its slope in place of the difference, as in OpenCV: what is found
     /// there is arbitrary, and a confidence tells it from the rest.
@@ -52,6 +55,7 @@ pub enum Outside {
 /// Names, ranges and meaning are those of OpenCV's `calcOpticalFlowFarneback`, as far as it has them. The source is
 /// G. Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Farneback {
     /// A level's size against the next finer one, in (0, 1).
     pub pyr_scale: f64,

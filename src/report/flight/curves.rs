@@ -1,6 +1,7 @@
 //! What changed over a flight.
 
 use super::page::FlightReport;
+use crate::quantile::{nearest, sorted};
 use crate::report::html::section;
 use crate::report::plot::{Curve, Plot, Span, range};
 use crate::sim::flight::{Cost, FRAME_S, Record};
@@ -152,9 +153,9 @@ impl<'a> Over<'a> {
                 points: times().map(|(time_s, cost)| [time_s, part(cost)]).collect(),
             })
             .collect();
-        let totals: Vec<f64> = costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64()).collect();
+        let totals = sorted(costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64()));
         // A few frames that took long, such as the first, do not hide all others.
-        let high = super::page::quantile(totals, 0.99).unwrap_or(0.0).max(1.1e3 * FRAME_S);
+        let high = nearest(&totals, 0.99).unwrap_or(0.0).max(1.1e3 * FRAME_S);
         let levels = vec![(1e3 * FRAME_S, "from frame to frame")];
         Plot { levels, ..self.plot("Cost", "ms", [0.0, high], curves) }.svg()
     }

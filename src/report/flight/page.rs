@@ -1,6 +1,7 @@
 //! A flight as a whole, as a page.
 
 use super::{curves, way};
+use crate::quantile::{nearest, sorted};
 use crate::report::html::{figures, page, paragraph, section, tile};
 use crate::sim::Course;
 use crate::sim::flight::{Body, Cost, FlightConfig, Measured, Outcome, Record, Sensor, Summary};
@@ -57,7 +58,7 @@ impl FlightReport<'_> {
             tile("path efficiency", format_args!("{:.0} %", 100.0 * self.summary.efficiency()), ""),
             tile("frames without a cue", format_args!("{:.1} %", 100.0 * invalid), ""),
         ];
-        let median = quantile(self.costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64()).collect(), 0.5);
+        let median = nearest(&sorted(self.costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64())), 0.5);
         let cost = median.map(|ms| tile("a frame costs", format_args!("{ms:.1} ms"), ""));
         format!("<div class=\"tiles\">\n{}{}</div>\n", tiles.concat(), cost.unwrap_or_default())
     }
@@ -91,9 +92,9 @@ impl FlightReport<'_> {
                 format!("{mean:.2} m in the mean, deviation {deviation:.2} m"),
             ));
         }
-        let errors: Vec<f64> = self.records.iter().filter_map(curves::relative_error).map(f64::abs).collect();
+        let errors = sorted(self.records.iter().filter_map(curves::relative_error).map(f64::abs));
         let count = errors.len();
-        if let [Some(median), Some(high)] = [0.5, 0.9].map(|share| quantile(errors.clone(), share)) {
+        if let [Some(median), Some(high)] = [0.5, 0.9].map(|share| nearest(&errors, share)) {
             let text = format!(
                 "{:.1} % in the median, {:.1} % at the 90th percentile of {count} frames with 0.7 to 4 s to go",
                 100.0 * median,
@@ -104,13 +105,13 @@ impl FlightReport<'_> {
         if let Some(measured) = &summary.measured {
             rows.extend(measured_rows(measured));
         }
-        let headings: Vec<f64> = self.records.iter().filter_map(|record| record.heading_error_rad).collect();
-        if let Some(median) = quantile(headings, 0.5) {
+        let headings = sorted(self.records.iter().filter_map(|record| record.heading_error_rad));
+        if let Some(median) = nearest(&headings, 0.5) {
             rows.push(("direction of motion, error", format!("{:.2}° in the median", median.to_degrees())));
         }
         for (name, _, part) in curves::PARTS {
-            let times: Vec<f64> = self.costs.iter().map(part).collect();
-            if let [Some(median), Some(high)] = [0.5, 0.99].map(|share| quantile(times.clone(), share)) {
+            let times = sorted(self.costs.iter().map(part));
+            if let [Some(median), Some(high)] = [0.5, 0.99].map(|share| nearest(&times, share)) {
                 rows.push((
                     name,
                     format!("{median:.2} ms in the median, {high:.2} ms at the 99th percentile"),
@@ -168,10 +169,4 @@ fn sensor(sensor: Sensor) -> &'static str {
         Sensor::NoisyFlow => "true flow with noise",
         Sensor::Images => "rendered pictures",
     }
-}
-
-/// The value that this share of all lie below; none of none.
-pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(((values.len().max(1) - 1) as f64 * share).round() as usize).copied()
 }

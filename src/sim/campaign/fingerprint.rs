@@ -1,46 +1,161 @@
-use std::fmt::{self, Debug, Write};
+//! A short name for a configuration in all its parts.
+
+use serde::Serialize;
+
+use crate::error::{Error, Result};
 
 /// A short name for a configuration in all its parts, and for this crate's version: 16 hexadecimal digits that are the same
-/// only where both are, FNV-1a over what [`Debug`] writes.
-pub fn fingerprint(configuration: &impl Debug) -> String {
-    let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
-    // A hash takes everything.
-    let _ = write!(hash, "{} {configuration:?}", env!("CARGO_PKG_VERSION"));
-    format!("{:016x}", hash.0)
+/// only where both are.
+///
+/// It is FNV-1a over the version and the configuration as canonical JSON: members in the order of their names, numbers as the
+/// shortest decimals that are read back the same. JSON has no infinity; a parameter that may be infinite counts as `null`.
+///
+/// # Errors
+/// [`Error::Parameter`] for what JSON cannot hold, such as a map whose keys are no text.
+pub fn fingerprint(configuration: &impl Serialize) -> Result<String> {
+    let text = format!("{} {}", env!("CARGO_PKG_VERSION"), canonical(configuration)?);
+    Ok(format!("{:016x}", fnv_1a(text.as_bytes())))
 }
 
-struct Fnv(u64);
+fn canonical(configuration: &impl Serialize) -> Result<String> {
+    let mut value = serde_json::to_value(configuration)
+        .map_err(|error| Error::parameter("configuration", error, "a value that JSON can hold"))?;
+    // They are sorted already unless some crate switches serde_json's `preserve_order` on.
+    value.sort_all_objects();
+    Ok(value.to_string())
+}
 
-impl Write for Fnv {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        Ok(())
-    }
+/// The hash of G. Fowler, L. C. Noll and K.-P. Vo, variant 1a, in 64 bits.
+fn fnv_1a(bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
+    use std::collections::BTreeSet;
+    use std::time::Duration;
+
+    use serde_json::{Value, json};
+
     use super::*;
-    use crate::sim::flight::FlightConfig;
+    use crate::frame::{Plane, Size};
+    use crate::imu::GyroConfig;
+    use crate::sim::flight::{Body, FlightConfig};
+    use crate::sim::vehicle::{Gusts, TurnParams, VaneErrors};
+
+    /// A configuration in which nothing is left out.
+    fn full() -> FlightConfig {
+        let mut config = FlightConfig::default();
+        config.pipeline.stream.deadline = Some(Duration::from_millis(7));
+        config.pipeline.ideal = Some(config.camera);
+        config.pipeline.mask = Some(Plane { size: Size::new(1, 1), data: vec![0.5] });
+        config.pipeline.gyro = Some(GyroConfig::default());
+        (config.vanes, config.gusts) = (Some(VaneErrors::default()), Some(Gusts::LIGHT));
+        config.faults = vec!["black:1..2".parse().unwrap(), "dropped=0.3".parse().unwrap()];
+        config
+    }
+
+    /// The places of all values that are no list and no object.
+    fn leaves(value: &Value, path: &str, found: &mut Vec<String>) {
+        match value {
+            Value::Object(members) => {
+                members.iter().for_each(|(name, value)| leaves(value, &format!("{path}/{name}"), found));
+            }
+            Value::Array(list) => {
+                (0..)
+                    .zip(list)
+                    .for_each(|(i, value): (usize, _)| leaves(value, &format!("{path}/{i}"), found));
+            }
+            _ => found.push(path.to_owned()),
+        }
+    }
+
+    /// The names of all members, also of those that are in others.
+    fn names(value: &Value, found: &mut Vec<String>) {
+        match value {
+            Value::Object(members) => members.iter().for_each(|(name, value)| {
+                found.push(name.clone());
+                names(value, found);
+            }),
+            Value::Array(list) => list.iter().for_each(|value| names(value, found)),
+            _ => (),
+        }
+    }
 
     #[test]
     fn the_hash_is_fnv_1a() {
         // The values of Fowler, Noll and Vo for these strings.
         for (text, expected) in [("a", 0xaf63_dc4c_8601_ec8c), ("foobar", 0x8594_4171_f739_67e8)] {
-            let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
-            assert!(hash.write_str(text).is_ok());
-            assert_eq!(hash.0, expected, "{text}");
+            assert_eq!(fnv_1a(text.as_bytes()), expected, "{text}");
         }
     }
 
     #[test]
-    fn any_part_of_a_configuration_counts() {
+    fn the_form_is_canonical() {
+        let unordered = json!({"b": [0.1, 1e300, -0.0], "a": {"d": null, "c": u64::MAX}});
+        let expected = r#"{"a":{"c":18446744073709551615,"d":null},"b":[0.1,1e+300,-0.0]}"#;
+        assert_eq!(canonical(&unordered).unwrap(), expected);
+    }
+
+    /// `Debug` as the compiler derives it knows every field, whatever serde was told to leave out.
+    #[test]
+    fn every_field_is_in_it() {
+        for body in [Body::default(), Body::Turn(TurnParams::default())] {
+            let config = FlightConfig { body, ..full() };
+            let mut written = Vec::new();
+            names(&serde_json::to_value(&config).unwrap(), &mut written);
+            // Names of variants are capital; the parts of a duration have no name in `Debug`.
+            written
+                .retain(|name| name.starts_with(char::is_lowercase) && !["secs", "nanos"].contains(&&**name));
+            let shown = format!("{config:#?}");
+            let field = |line: &str| line.trim().split_once(':').map(|(name, _)| name.to_owned());
+            let mut fields: Vec<String> = shown.lines().filter_map(field).collect();
+            // The columns of a matrix are numbers in a list.
+            fields.retain(|name| !["x_axis", "y_axis", "z_axis"].contains(&&**name));
+            written.sort();
+            fields.sort();
+            assert!(fields.len() > 100, "{fields:?}");
+            assert_eq!(written, fields);
+        }
+    }
+
+    #[test]
+    fn any_member_that_changes_changes_it() {
+        let config = full();
+        let whole = serde_json::to_value(&config).unwrap();
+        let before = fingerprint(&config).unwrap();
+        assert_eq!(fingerprint(&config.clone()).unwrap(), before);
+        assert_eq!(fingerprint(&whole).unwrap(), before);
+        let mut places = Vec::new();
+        leaves(&whole, "", &mut places);
+        let mut all = BTreeSet::from([before]);
+        for place in &places {
+            let mut changed = whole.clone();
+            let leaf = changed.pointer_mut(place).unwrap();
+            *leaf = match &*leaf {
+                Value::Null => json!(0),
+                Value::Bool(on) => json!(!on),
+                Value::String(text) => json!(format!("{text}x")),
+                // Nor is a change of a number's last bit lost.
+                Value::Number(number) => match number.as_u64() {
+                    Some(whole) => json!(whole ^ 1),
+                    None => json!(number.as_f64().unwrap().next_up()),
+                },
+                other => unreachable!("{other} is no leaf"),
+            };
+            assert!(all.insert(fingerprint(&changed).unwrap()), "{place} does not count");
+        }
+        assert!(places.len() > 100, "{places:?}");
+    }
+
+    #[test]
+    fn a_field_that_changes_changes_it() {
         let config = FlightConfig::default();
         let mut other = config.clone();
         other.steer.weights.bank += 1e-12;
-        assert_eq!(fingerprint(&config), fingerprint(&config.clone()));
-        assert_ne!(fingerprint(&config), fingerprint(&other));
+        assert_ne!(fingerprint(&config).unwrap(), fingerprint(&other).unwrap());
     }
 }

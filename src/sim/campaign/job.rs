@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::frame::Size;
 use crate::sim::CourseKind;
 use crate::sim::flight::{Flight, FlightConfig, Sensor, Summary, camera};
-use crate::steer::{Danger, Policy, SteerConfig};
+use crate::steer::{Danger, Policy, SteerParams};
 
 /// What distinguishes the flights of a campaign but for their seeds: a row of its table.
 ///
@@ -65,7 +65,7 @@ impl Setting {
     pub fn config(&self, base: &FlightConfig) -> FlightConfig {
         FlightConfig {
             sensor: self.sensor,
-            steer: SteerConfig { policy: self.policy, danger: self.danger, ..base.steer.clone() },
+            steer: SteerParams { policy: self.policy, danger: self.danger, ..base.steer.clone() },
             speed_m_s: self.speed_m_s,
             camera: camera(self.size),
             latency_frames: self.latency_frames,

@@ -82,7 +82,7 @@ mod tests {
     use crate::sim::flight::{FlightConfig, Outcome};
 
     fn configuration() -> Configuration {
-        Configuration::new(&FlightConfig::default(), "defaults".to_owned())
+        Configuration::new(&FlightConfig::default(), "defaults".to_owned()).unwrap()
     }
 
     fn reached(seed: u64) -> JobResult {
@@ -134,7 +134,7 @@ mod tests {
         let path = folder.path().join("results.jsonl");
         let whole = begun(&path);
         let base = FlightConfig { radius_m: 0.7, ..FlightConfig::default() };
-        let other = Configuration::new(&base, "a large plane".to_owned());
+        let other = Configuration::new(&base, "a large plane".to_owned()).unwrap();
         for text in [whole.clone(), whole[..whole.len() - 5].to_owned(), "something else".to_owned()] {
             fs::write(&path, &text).unwrap();
             let error = Journal::open(&path, &other).unwrap_err().to_string();

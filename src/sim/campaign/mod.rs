@@ -6,6 +6,7 @@
 //! together again.
 
 mod faults;
+#[cfg(feature = "serde")]
 mod fingerprint;
 mod job;
 #[cfg(all(feature = "io", feature = "serde"))]
@@ -23,6 +24,7 @@ mod table;
 mod testing;
 
 pub use faults::Faults;
+#[cfg(feature = "serde")]
 pub use fingerprint::fingerprint;
 pub use job::{Job, Setting};
 #[cfg(all(feature = "io", feature = "serde"))]

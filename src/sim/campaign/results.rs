@@ -33,8 +33,12 @@ pub struct Results {
 
 impl Configuration {
     /// That of flights which begin with `base`. `settings` says what of it was chosen.
-    pub fn new(base: &FlightConfig, settings: String) -> Self {
-        Self { viewsphere: env!("CARGO_PKG_VERSION").to_owned(), fingerprint: fingerprint(base), settings }
+    ///
+    /// # Errors
+    /// As [`fingerprint`].
+    pub fn new(base: &FlightConfig, settings: String) -> Result<Self> {
+        let fingerprint = fingerprint(base)?;
+        Ok(Self { viewsphere: env!("CARGO_PKG_VERSION").to_owned(), fingerprint, settings })
     }
 
     /// Checks that results of another file belong to these.
@@ -197,7 +201,8 @@ mod tests {
     use crate::sim::flight::Outcome;
 
     fn results(all: impl IntoIterator<Item = JobResult>) -> Results {
-        let mut results = Results::new(Configuration::new(&FlightConfig::default(), "defaults".to_owned()));
+        let mut results =
+            Results::new(Configuration::new(&FlightConfig::default(), "defaults".to_owned()).unwrap());
         all.into_iter().for_each(|result| results.add("a", result).unwrap());
         results
     }
@@ -253,7 +258,7 @@ mod tests {
     fn results_of_another_configuration_are_refused() {
         let mut one = results([]);
         let base = FlightConfig { radius_m: 0.7, ..FlightConfig::default() };
-        let other = Results::new(Configuration::new(&base, "a large plane".to_owned()));
+        let other = Results::new(Configuration::new(&base, "a large plane".to_owned()).unwrap());
         let error = one.merge("b", other).unwrap_err().to_string();
         assert!(error.starts_with("b: configuration") && error.contains("a large plane"), "{error}");
     }

@@ -21,13 +21,6 @@ pub(super) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The value that this share of all lie below, the nearest that is there; none of nothing.
-pub(super) fn quantile(values: &[f64], share: f64) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get((sorted.len().saturating_sub(1) as f64 * share).round() as usize).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,11 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_values_that_are_there() {
-        let values: Vec<f64> = (0..=100).rev().map(f64::from).collect();
-        assert_eq!(quantile(&values, 0.05), Some(5.0));
-        assert_eq!(quantile(&[3.0], 0.05), Some(3.0));
-        assert_eq!((quantile(&[], 0.5), mean(&[])), (None, None));
-        assert_eq!(mean(&[1.0, 2.0]), Some(1.5));
+    fn the_mean_of_nothing_is_none() {
+        assert_eq!((mean(&[]), mean(&[1.0, 2.0])), (None, Some(1.5)));
     }
 }

@@ -1,7 +1,8 @@
 use std::fmt::Write;
 
-use super::statistics::{mean, quantile, wilson};
+use super::statistics::{mean, wilson};
 use super::{Ended, JobResult, Setting};
+use crate::quantile::{nearest, sorted};
 use crate::sim::flight::{Outcome, Summary};
 
 /// What a campaign says: a row for each setting, in the order of [`Setting::order`].
@@ -200,7 +201,7 @@ impl Row {
             success_low,
             success_high,
             least_clearance_mean_m: mean(&clearances_m),
-            least_clearance_p5_m: quantile(&clearances_m, 0.05),
+            least_clearance_p5_m: nearest(&sorted(clearances_m.iter().copied()), 0.05),
             efficiency: mean(&arrived.map(|summary| summary.efficiency()).collect::<Vec<_>>()),
             between_crashes_m: (crashed > 0).then(|| path_m / crashed as f64),
             path_m,

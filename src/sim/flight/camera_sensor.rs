@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use super::config::FlightConfig;
+use super::cost::Cost;
 use super::fault::{Fault, FaultKind};
 use super::measure::Measure;
-use super::record::Cost;
-use super::sensor_model::{Perception, SensorInput};
+use super::perception::{Perception, SensorInput};
 use crate::backend::Backend;
 use crate::camera::{Camera, Pose};
 use crate::error::{Error, Result};
@@ -124,6 +124,7 @@ impl CameraSensor {
             },
         })
     }
+
     /// Remembers from where the picture was taken, where that is asked for.
     fn show(&mut self, pose: Option<Pose>) {
         if let Some(measure) = &mut self.measure {

@@ -1,84 +1,30 @@
-//! What a flight is made of and told.
+//! Configuration of a flight.
 
+use super::body::Body;
+use super::fault::Fault;
+use super::sensor::{FlowNoise, Sensor};
 use crate::camera::{Camera, Lens};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, in_ranges};
 use crate::flow::{Algorithm, Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
-use crate::sim::vehicle::{
-    AirframeParams, AirspeedModel, Autopilot, Gusts, GyroErrors, TurnParams, VaneErrors, Wind,
-};
+use crate::sim::vehicle::{AirspeedModel, Gusts, GyroErrors, VaneErrors, Wind};
 use crate::sim::{Course, RendererConfig};
 use crate::sphere::{Derotation, HeadingModel, Sphere};
-use crate::steer::SteerConfig;
-
-use super::Fault;
-
-/// What the steering sees by: a ladder from what is known exactly to what a camera gives.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sensor {
-    /// The true nearness and the true direction of motion.
-    Depth,
-    /// The true flow of each cell.
-    Flow,
-    /// The true flow, blurred as a window blurs it, and noisy.
-    NoisyFlow,
-    /// Pictures through a lens, and a [`Pipeline`](crate::Pipeline).
-    #[default]
-    Images,
-}
-
-/// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow in pictures of 320×240, as a
-/// flight computes it: the better half of the cells in a corridor are 0.064 px off in the median, which is a standard
-/// deviation of 0.055 px along each axis, and what windows of 3 px on each level (with the expansion's 1.2 px) let through is
-/// halved at the same detail as by a Gaussian of 3.1 px.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowNoise {
-    /// Standard deviation of the Gaussian that it is blurred with, in pixels, above 0.
-    pub blur_px: f64,
-    /// Standard deviation of what is added to each cell along two axes, in pixels.
-    pub white_px: f64,
-    /// Standard deviation of the factor that it is multiplied with, against 1.
-    pub relative: f64,
-}
-
-impl Default for FlowNoise {
-    fn default() -> Self {
-        Self { blur_px: 3.1, white_px: 0.055, relative: 0.03 }
-    }
-}
+use crate::steer::SteerParams;
 
 /// The most frames that a command may act after its exposure: one second of them.
 pub const MAX_LATENCY_FRAMES: u32 = 30;
 
-/// What flies.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Body {
-    /// A point in coordinated turns.
-    Turn(TurnParams),
-    /// A rigid body with an inner loop.
-    Airframe {
-        /// The airframe.
-        params: Box<AirframeParams>,
-        /// Its inner loop.
-        autopilot: Autopilot,
-    },
-}
-
-impl Default for Body {
-    fn default() -> Self {
-        Self::Airframe { params: Box::default(), autopilot: Autopilot::default() }
-    }
-}
-
 /// How a flight is flown.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FlightConfig {
     /// What flies.
     pub body: Body,
     /// Its airspeed, m/s: 0.1 to 1000 of a turn, and where an airframe flies level
-    /// ([`AirframeParams::level_speeds_m_s`]).
+    /// ([`AirframeParams::level_speeds_m_s`](crate::sim::vehicle::AirframeParams::level_speeds_m_s)).
     pub speed_m_s: f64,
     /// The radius of the ball around its middle that must stay free, metres, above 0: half the wing span.
     pub radius_m: f64,
@@ -90,9 +36,8 @@ pub struct FlightConfig {
     pub renderer: RendererConfig,
     /// How they are looked at. The gyro is set by the flight.
     pub pipeline: PipelineConfig,
-    /// What is done about it. The camera's mounting and the latency are set by the flight, and how the aircraft follows
-    /// commands where that is known: of a coordinated turn.
-    pub steer: SteerConfig,
+    /// How it is steered by what they show. What steering is told of the aircraft follows from the body and the latency.
+    pub steer: SteerParams,
     /// Frames from an exposure until its command acts, at most [`MAX_LATENCY_FRAMES`].
     pub latency_frames: u32,
     /// What the gyro gets wrong.
@@ -147,7 +92,7 @@ impl Default for FlightConfig {
                 max_remaining_rad_s: 0.1,
                 ..PipelineConfig::default()
             },
-            steer: SteerConfig::default(),
+            steer: SteerParams::default(),
             latency_frames: 1,
             gyro: GyroErrors::default(),
             airspeed_error: AirspeedModel::USUAL,
@@ -200,17 +145,13 @@ impl FlightConfig {
         self.pipeline.validate()?;
         self.pipeline.ideal(&self.camera)?;
         self.steer.validate()?;
-        for (name, value, low, high) in [
+        in_ranges(&[
             ("radius_m", self.radius_m, 1e-3, 1e3),
             ("flow_noise.blur_px", self.flow_noise.blur_px, 1e-3, 1e3),
             ("flow_noise.white_px", self.flow_noise.white_px, 0.0, 1e3),
             ("flow_noise.relative", self.flow_noise.relative, 0.0, 1.0),
             ("patience", self.patience, 1.0, 1e3),
-        ] {
-            if !(low..=high).contains(&value) {
-                return Err(Error::parameter(name, value, format_args!("{low} to {high}")));
-            }
-        }
+        ])?;
         if self.latency_frames > MAX_LATENCY_FRAMES {
             let expected = format_args!("0 to {MAX_LATENCY_FRAMES}");
             return Err(Error::parameter("latency_frames", self.latency_frames, expected));
@@ -223,18 +164,7 @@ impl FlightConfig {
                 expected,
             ));
         }
-        match &self.body {
-            Body::Turn(params) => {
-                params.validate()?;
-                if !(0.1..=1e3).contains(&self.speed_m_s) {
-                    return Err(Error::parameter("speed_m_s", self.speed_m_s, "0.1 to 1000 m/s"));
-                }
-            }
-            Body::Airframe { params, autopilot } => {
-                autopilot.validate()?;
-                params.trim(self.speed_m_s)?;
-            }
-        }
+        self.body.validate(self.speed_m_s)?;
         self.gyro.validate()?;
         Wind::new(self.wind_ned_m_s, self.gusts, 0)?;
         self.faults.iter().try_for_each(|fault| fault.validate().and_then(|()| fault.check(self.sensor)))

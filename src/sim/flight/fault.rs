@@ -3,12 +3,13 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::Sensor;
+use super::sensor::Sensor;
 use crate::error::{Error, Result};
 use crate::sim::vehicle::MAX_BIAS_RAD_S;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum FaultKind {
     /// The camera gives the last picture again and again.
     Frozen,
@@ -30,6 +31,7 @@ pub enum FaultKind {
 
 /// Something that goes wrong for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fault {
     /// What goes wrong.
     pub kind: FaultKind,

@@ -1,77 +1,22 @@
 //! What a pipeline measures, held against the true flow of the same cells.
 
-use glam::DMat3;
-
-use super::sensor_model::SensorInput;
-use super::true_sensor::true_flow;
+use super::accuracy::{Divergences, Measured};
+use super::cell_truth::CellRays;
+use super::perception::SensorInput;
 use crate::camera::{Camera, Pose};
 use crate::error::Result;
 use crate::frame::{Plane, Size};
 use crate::pipeline::Cue;
-use crate::sim::{RayTable, Seen, Twist, query_rays};
+use crate::quantile::median;
+use crate::sim::{Twist, query_rays};
 use crate::sphere::{Sphere, model};
 
 /// True times to contact at which the measured ones are judged, seconds: steering acts on these.
 const JUDGED_S: [f64; 2] = [0.7, 4.0];
 
-/// How far a frame's measured flow is from the true one; or a flight's, as medians over its frames.
-///
-/// A cell's truth is the mean over the samples that its measured flow is the mean of, each from what its ray meets and the
-/// exact poses of the two frames; what the gyro gets wrong of the turn between them is part of the error. The sky stands
-/// still, infinitely far away.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// Median length by which the flow on the view sphere from one frame to the next, the camera's turn taken out, is off in
-    /// the half of the trusted cells that is trusted more than the other: in pixels of the ideal picture's middle. None where
-    /// there are no such cells.
-    pub better_half_error_px: Option<f64>,
-    /// The same in all trusted cells.
-    pub trusted_error_px: Option<f64>,
-    /// The share of cells that are trusted, by [`Sphere::least_confidence`] or more: 0 to 1.
-    pub trusted: f64,
-    /// Median relative error of the time to contact, in trusted cells whose true one is between 0.7 and 4 s; a cell that
-    /// shows nothing coming nearer is infinitely wrong. None where there are no such cells.
-    pub contact_error: Option<f64>,
-    /// How many of these there are; of a flight, in all its frames together.
-    pub contact_cells: usize,
-}
-
-/// The divergence of the flow on the view sphere in each cell, 1/s.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Divergences {
-    /// As measured; NaN in cells around which too little is trusted.
-    pub measured_hz: Plane,
-    /// In truth: the mean over a cell.
-    pub true_hz: Plane,
-}
-
-impl Measured {
-    /// Medians over frames; none of no frames.
-    pub(super) fn over(frames: &[Self]) -> Option<Self> {
-        let of = |part: fn(&Self) -> Option<f64>| median(frames.iter().filter_map(part).collect());
-        Some(Self {
-            better_half_error_px: of(|frame| frame.better_half_error_px),
-            trusted_error_px: of(|frame| frame.trusted_error_px),
-            trusted: of(|frame| Some(frame.trusted))?,
-            contact_error: of(|frame| frame.contact_error),
-            contact_cells: frames.iter().map(|frame| frame.contact_cells).sum(),
-        })
-    }
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
-
 /// Holds cues against the truth.
 pub(super) struct Measure {
-    /// Of the samples, or of all pixels where the samples of two cells are not evenly apart.
-    rays: RayTable,
-    /// Pixels from one ray to the next.
-    apart: usize,
-    cell: usize,
-    step: usize,
+    rays: CellRays,
     least_confidence: f64,
     focal_px: f64,
     divergences: Divergences,
@@ -81,34 +26,11 @@ pub(super) struct Measure {
     before: Option<Pose>,
 }
 
-/// Sums over the samples of a cell, then their means.
-#[derive(Default)]
-struct Truth {
-    count: f64,
-    /// In the plane at unit distance, as the measured one.
-    flow: [f64; 2],
-    nearness_per_m: f64,
-    divergence_hz: f64,
-}
-
 impl Measure {
     pub(super) fn new(ideal: &Camera, cells: Size, view: &Sphere) -> Result<Self> {
-        let apart = if view.cell.is_multiple_of(view.step) { view.step } else { 1 };
-        let share = f64::from(apart);
-        let sampled = Camera {
-            size: Size::new(ideal.size.width.div_ceil(apart), ideal.size.height.div_ceil(apart)),
-            f_u: ideal.f_u / share,
-            f_v: ideal.f_v / share,
-            u_0: ideal.u_0 / share,
-            v_0: ideal.v_0 / share,
-            lens: ideal.lens,
-        };
         let unknown = Plane { size: cells, data: vec![f32::NAN; cells.pixels()] };
         Ok(Self {
-            rays: RayTable::new(&sampled)?,
-            apart: apart as usize,
-            cell: view.cell as usize,
-            step: view.step as usize,
+            rays: CellRays::new(ideal, view)?,
             least_confidence: view.least_confidence,
             focal_px: ideal.f_u,
             divergences: Divergences { measured_hz: unknown.clone(), true_hz: unknown },
@@ -139,7 +61,7 @@ impl Measure {
         let prev_from_cur = before.world_from_camera.transpose() * pose.world_from_camera;
         let velocity_m_s = pose.world_from_camera.transpose() * at.velocity_world_m_s;
         let motion = Twist { velocity_m_s, rate_rad_s: glam::DVec3::ZERO };
-        let seen = query_rays(at.world, &self.rays, &pose);
+        let seen = query_rays(at.world, self.rays.table(), &pose);
         let size = self.divergences.true_hz.size;
         let (columns, stride) = (size.width as usize, size.stride());
         let (mut trusted, mut contacts) = (Vec::new(), Vec::new());
@@ -148,7 +70,7 @@ impl Measure {
             let value = |field: &[f32], channels: usize, channel: usize| {
                 f64::from(field[(channels * cell[1] + channel) * stride + cell[0]])
             };
-            let truth = self.truth(cell, &seen, [&before, &pose], &prev_from_cur, &motion);
+            let truth = self.rays.truth(cell, &seen, [&before, &pose], &prev_from_cur, &motion);
             // As the sectors take them.
             let is_known = value(looming, 4, 3) >= 0.5 * self.least_confidence;
             let divergence_hz = if is_known { value(looming, 4, 1) / interval_s } else { f64::NAN };
@@ -173,45 +95,12 @@ impl Measure {
         trusted.sort_by(|a, b| b.0.total_cmp(&a.0));
         let errors_px: Vec<f64> = trusted.into_iter().map(|(_, error_px)| error_px).collect();
         Some(Measured {
-            better_half_error_px: median(errors_px[..errors_px.len().div_ceil(2)].to_vec()),
+            better_half_error_px: median(errors_px[..errors_px.len().div_ceil(2)].iter().copied()),
             trusted: errors_px.len() as f64 / size.pixels() as f64,
             trusted_error_px: median(errors_px),
             contact_cells: contacts.len(),
             contact_error: median(contacts),
         })
-    }
-
-    /// The means over a cell's samples.
-    fn truth(
-        &self,
-        cell: [usize; 2],
-        seen: &[Option<Seen>],
-        poses: [&Pose; 2],
-        prev_from_cur: &DMat3,
-        motion: &Twist,
-    ) -> Truth {
-        let Size { width, height } = self.rays.size();
-        let along = |axis: usize, side: u32| {
-            let pixels = (0..self.cell).step_by(self.step).map(move |pixel| cell[axis] * self.cell + pixel);
-            pixels.map(|pixel| pixel / self.apart).filter(move |ray| *ray < side as usize)
-        };
-        let mut truth = Truth::default();
-        for y in along(1, height) {
-            for seen in along(0, width).filter_map(|x| seen[y * width as usize + x]) {
-                let (bearing, flow) = true_flow(seen.bearing, seen.nearness_per_m, poses, prev_from_cur);
-                let [x, y] = model::to_plane(bearing, flow);
-                truth.count += 1.0;
-                truth.flow = [truth.flow[0] + x, truth.flow[1] + y];
-                truth.nearness_per_m += seen.nearness_per_m;
-                truth.divergence_hz += seen.divergence_per_s(motion);
-            }
-        }
-        Truth {
-            flow: truth.flow.map(|sum| sum / truth.count),
-            nearness_per_m: truth.nearness_per_m / truth.count,
-            divergence_hz: truth.divergence_hz / truth.count,
-            ..truth
-        }
     }
 }
 
@@ -226,7 +115,7 @@ mod tests {
     use crate::camera::{FRD_FROM_CAMERA, Lens, world_from_body};
     use crate::frame::FlowField;
     use crate::kernels::cells::{KERNEL, Params};
-    use crate::sim::{CourseKind, displacement};
+    use crate::sim::{CourseKind, RayTable, displacement};
     use crate::sphere::{Grid, Heading, Sectors};
 
     const SIZE: Size = Size::new(96, 72);
@@ -319,23 +208,5 @@ mod tests {
         measure.show(Some(pose));
         let wrong = measure.compare(&cue, &input(pose)).unwrap();
         assert!(wrong.trusted_error_px.unwrap() > 2e-3, "{wrong:?}");
-    }
-
-    fn frame(error_px: f64, contact: Option<f64>) -> Measured {
-        Measured {
-            better_half_error_px: Some(error_px),
-            trusted_error_px: None,
-            trusted: error_px,
-            contact_error: contact,
-            contact_cells: 3,
-        }
-    }
-
-    #[test]
-    fn a_flight_is_the_median_of_its_frames() {
-        assert_eq!(Measured::over(&[]), None);
-        let frames = [frame(0.3, None), frame(0.1, Some(f64::INFINITY)), frame(0.2, Some(0.05))];
-        let expected = Measured { contact_error: Some(f64::INFINITY), contact_cells: 9, ..frame(0.2, None) };
-        assert_eq!(Measured::over(&frames), Some(expected));
     }
 }

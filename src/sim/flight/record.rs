@@ -1,11 +1,18 @@
 //! What is kept of a flight.
 
-use std::time::Duration;
-
 use glam::DVec3;
 
-use super::measure::Measured;
-use crate::steer::{Command, Source};
+use super::accuracy::Measured;
+use super::perception::{Perception, SensorInput};
+use crate::camera::roll_pitch_yaw_rad;
+use crate::quantile::median;
+use crate::sim::Course;
+use crate::sim::vehicle::VehicleState;
+use crate::sphere::{Heading, Sectors};
+use crate::steer::{Command, Decision, Source, View};
+
+/// How far off the direction of motion sectors may lie that say what is met there, radians.
+const AHEAD_RAD: f64 = 0.1;
 
 /// What is kept of a frame. It holds nothing that differs from one run to the next.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,113 +59,54 @@ pub struct Record {
     pub acting: Command,
 }
 
-/// How a flight ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// The goal was reached.
-    Reached,
-    /// Something came nearer than the vehicle's radius.
-    Crashed,
-    /// The vehicle left the band of altitudes.
-    LeftBand,
-    /// It took too long.
-    TimedOut,
-}
-
-/// A flight in numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// When, seconds.
-    pub time_s: f64,
-    /// Progress towards the goal, metres.
-    pub progress_m: f64,
-    /// The way flown, metres.
-    pub path_m: f64,
-    /// The least clearance, metres.
-    pub least_clearance_m: f64,
-    /// The clearance that is undercut for a twentieth of the time, metres.
-    pub low_clearance_m: f64,
-    /// Root mean square of the roll rate, rad/s: what control costs.
-    pub roll_rate_rad_s: f64,
-    /// The share of frames without a cue, 0 to 1.
-    pub invalid: f64,
-    /// Standard deviation of the offset from the middle of the way, metres, and its mean, where there is a middle.
-    pub offset_m: Option<[f64; 2]>,
-    /// How far the flow is from the true one, where that is measured: medians over the frames.
-    pub measured: Option<Measured>,
-}
-
-impl Summary {
-    /// Progress a metre flown, 0 to 1.
-    pub fn efficiency(&self) -> f64 {
-        if self.path_m > 0.0 { (self.progress_m / self.path_m).max(0.0) } else { 0.0 }
-    }
-}
-
-/// What the parts of a frame cost. It differs from run to run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cost {
-    /// Drawing the picture, or finding the true flow.
-    pub sensor: Duration,
-    /// From the picture to the sectors.
-    pub pipeline: Duration,
-    /// From the sectors to a command.
-    pub steer: Duration,
-    /// The vehicle's motion, and how near it is to everything.
-    pub vehicle: Duration,
-}
-
-impl Cost {
-    /// All together.
-    pub fn total(&self) -> Duration {
-        self.sensor + self.pipeline + self.steer + self.vehicle
-    }
-}
-
-/// Adds up what becomes a [`Summary`].
-#[derive(Clone, Debug, Default)]
-pub(super) struct Tally {
-    clearances_m: Vec<f64>,
-    offsets_m: Vec<f64>,
-    measured: Vec<Measured>,
-    path_m: f64,
-    roll_rate_square: f64,
-    invalid: usize,
-    last_m: Option<DVec3>,
-}
-
-impl Tally {
-    pub(super) fn add(&mut self, record: &Record) {
-        self.clearances_m.push(record.clearance_m);
-        self.offsets_m.extend(record.offset_m);
-        self.measured.extend(record.measured);
-        let last_m = self.last_m.replace(record.position_ned_m);
-        self.path_m += last_m.map_or(0.0, |last_m| last_m.distance(record.position_ned_m));
-        self.roll_rate_square += record.rate_body_rad_s.x.powi(2);
-        self.invalid += usize::from(record.invalid.is_some());
-    }
-
-    /// The least clearance may have been between two frames.
-    pub(super) fn summary(&self, outcome: Outcome, last: &Record, least_clearance_m: f64) -> Summary {
-        let count = self.clearances_m.len().max(1) as f64;
-        let mut sorted = self.clearances_m.clone();
-        sorted.sort_by(f64::total_cmp);
-        let mean = self.offsets_m.iter().sum::<f64>() / self.offsets_m.len() as f64;
-        let variance = self.offsets_m.iter().map(|offset| (offset - mean).powi(2)).sum::<f64>();
-        Summary {
-            outcome,
-            time_s: last.time_s,
-            progress_m: last.progress_m,
-            path_m: self.path_m,
-            least_clearance_m,
-            low_clearance_m: sorted.get(sorted.len() / 20).copied().unwrap_or(least_clearance_m),
-            roll_rate_rad_s: (self.roll_rate_square / count).sqrt(),
-            invalid: self.invalid as f64 / count,
-            offset_m: (!self.offsets_m.is_empty())
-                .then(|| [(variance / self.offsets_m.len() as f64).sqrt(), mean]),
-            measured: Measured::over(&self.measured),
+impl Record {
+    /// What is kept of a frame: where the vehicle is, what the sensor says, and what became of it.
+    pub(super) fn of(
+        course: &Course,
+        at: &SensorInput<'_>,
+        state: &VehicleState,
+        perception: &Perception<'_>,
+        decision: Decision,
+        acting: Command,
+    ) -> Self {
+        let motion = at.velocity_world_m_s;
+        let ahead = at.pose.world_from_camera.transpose() * motion.normalize_or(DVec3::X);
+        let true_rate_hz = course.world.seen(&at.pose, ahead).nearness_per_m * motion.length();
+        let heading = perception.view.map(|view| view.heading).filter(Heading::is_known);
+        let sectors =
+            perception.view.map(|view| view.sectors).or(perception.cue.as_ref().map(|cue| cue.sectors));
+        let contact_s = perception.view.and_then(|View { sectors, .. }| ahead_s(sectors, ahead));
+        Self {
+            frame: at.frame,
+            time_s: at.time_s,
+            position_ned_m: state.position_ned_m,
+            velocity_ned_m_s: state.velocity_ned_m_s,
+            roll_pitch_yaw_rad: roll_pitch_yaw_rad(&state.world_from_body),
+            rate_body_rad_s: state.rate_body_rad_s,
+            airspeed_m_s: state.air_velocity_body_m_s.length(),
+            clearance_m: course.world.clearance_m(state.position_ned_m),
+            progress_m: course.progress_m(state.position_ned_m),
+            offset_m: course.offset_m(state.position_ned_m),
+            invalid: perception.invalid.clone(),
+            coverage: sectors.map_or(0.0, Sectors::coverage),
+            heading_error_rad: heading.map(|heading| heading.direction.angle_between(ahead)),
+            contact_s,
+            true_contact_s: (true_rate_hz > 0.0).then(|| true_rate_hz.recip()),
+            measured: perception.measured,
+            command: decision.command,
+            source: decision.source,
+            danger: decision.danger,
+            acting,
         }
     }
+}
+
+/// Seconds until contact in a direction: by the median of the sectors around it, since a single one there says little.
+fn ahead_s(sectors: &Sectors, direction: DVec3) -> Option<f64> {
+    let grid = sectors.grid;
+    let around = (0..grid.len())
+        .filter(|at| grid.bearing(at % grid.columns, at / grid.columns).dot(direction) > AHEAD_RAD.cos());
+    let known = around.map(|at| &sectors.sectors[at]).filter(|sector| sector.is_known());
+    let rate_hz = median(known.map(|sector| sector.nearness_rate_hz[1]))?;
+    (rate_hz > 0.0).then(|| (rate_hz.recip() - 0.5 * sectors.interval_s).max(0.0))
 }

@@ -1,54 +1,26 @@
-//! Whatever the flight sees by.
+//! The sensor that a flight steers by.
 
 use std::time::Instant;
 
-use glam::DVec3;
-
 use super::camera_sensor::CameraSensor;
-use super::config::{FlightConfig, Sensor};
-use super::measure::{Divergences, Measured};
-use super::record::Cost;
+use super::config::FlightConfig;
+use super::cost::Cost;
+use super::perception::{Perception, SensorInput};
+use super::sensor::Sensor;
 use super::true_sensor::TrueSensor;
 use crate::backend::Backend;
-use crate::camera::{Camera, FRD_FROM_CAMERA, Pose};
+use crate::camera::{Camera, FRD_FROM_CAMERA};
 use crate::error::Result;
-use crate::frame::Image;
 use crate::imu::{Gyro, GyroConfig, GyroSample};
-use crate::pipeline::{Cue, Invalid};
+use crate::pipeline::Invalid;
 use crate::sim::{Random, World};
-use crate::sphere::Heading;
-use crate::steer::View;
 
-/// Whatever the flight sees by.
+/// The sensor that a flight steers by.
 pub(super) enum SensorModel {
     /// The world itself, what the gyro tells, and the time of the frame before.
     True(Box<TrueSensor>, Box<Gyro>, Option<f64>),
     /// A camera and a pipeline.
     Camera(Box<CameraSensor>),
-}
-
-/// What a sensor is given for a frame.
-pub(super) struct SensorInput<'a> {
-    pub(super) world: &'a World,
-    pub(super) pose: Pose,
-    pub(super) velocity_world_m_s: DVec3,
-    /// Which way the camera moves, in its own frame, where vanes tell.
-    pub(super) heading: Option<Heading>,
-    pub(super) frame: u64,
-    pub(super) time_s: f64,
-}
-
-/// What a sensor tells of a frame.
-#[derive(Default)]
-pub(super) struct Perception<'a> {
-    pub(super) image: Option<&'a Image>,
-    pub(super) cue: Option<Cue<'a>>,
-    pub(super) view: Option<View<'a>>,
-    /// Why there is no view.
-    pub(super) invalid: Option<String>,
-    /// How far it is from the truth, where that is asked for.
-    pub(super) measured: Option<Measured>,
-    pub(super) divergences: Option<&'a Divergences>,
 }
 
 impl SensorModel {

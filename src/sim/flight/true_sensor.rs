@@ -2,30 +2,18 @@
 
 use glam::{DMat3, DVec3};
 
-use super::config::{FlowNoise, Sensor};
-use super::sensor_model::SensorInput;
+use super::perception::SensorInput;
+use super::sensor::{FlowNoise, Sensor};
+use super::true_flow::true_flow;
 use crate::camera::{Camera, Pose};
 use crate::error::Result;
 use crate::frame::Plane;
+use crate::quantile::nearest;
 use crate::sim::{Random, RayTable, nearness};
 use crate::sphere::{
-    CellFlow, Heading, HeadingFilter, HeadingModel, Sector, SectorAggregator, Sectors, Sphere, model,
+    CellFlow, Heading, HeadingFilter, HeadingModel, Sector, SectorAggregator, Sectors, Sphere,
 };
 use crate::steer::View;
-
-/// How what is seen at a bearing and a nearness moved from one exact pose to the next, a turn taken out: where it is half-way,
-/// and the flow there in radians.
-pub(super) fn true_flow(
-    bearing: DVec3,
-    nearness_per_m: f64,
-    [before, pose]: [&Pose; 2],
-    prev_from_cur: &DMat3,
-) -> (DVec3, DVec3) {
-    let from_before =
-        nearness_per_m * (pose.position_world - before.position_world) + pose.world_from_camera * bearing;
-    let seen_before = before.world_from_camera.transpose() * from_before.normalize();
-    model::midpoint_flow(prev_from_cur.transpose() * seen_before, bearing)
-}
 
 /// Sees through a pinhole that has a pixel for each cell of the view.
 pub(super) struct TrueSensor {
@@ -177,8 +165,7 @@ impl TrueSensor {
             let (rates, cells) = (&mut rates[at], cells[at]);
             let p = grid.bearing(at % grid.columns, at / grid.columns);
             rates.sort_by(f64::total_cmp);
-            let rank = |share: f64| ((rates.len().max(1) - 1) as f64 * share).round() as usize;
-            let rate = |share: f64| rates.get(rank(share)).copied().unwrap_or(0.0);
+            let rate = |share: f64| nearest(rates, share).unwrap_or(0.0);
             *sector = Sector {
                 coverage: rates.len() as f64 / cells.max(1) as f64,
                 confidence: 1.0,

@@ -2,6 +2,7 @@ use crate::error::{Error, Result};
 
 /// How a [`Renderer`](super::Renderer) draws.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RendererConfig {
     /// Standard deviation of the noise of a pixel, in gray levels of 255: 0 to 64.
     pub noise_levels: f64,

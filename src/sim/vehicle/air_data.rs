@@ -37,6 +37,7 @@ impl AirspeedModel {
 
 /// What is wrong with a pair of vanes. Both are standard deviations, of each vane, in radians, 0 or above.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VaneErrors {
     /// How they are mounted: the same for a whole flight.
     pub fixed_rad: f64,

@@ -15,6 +15,7 @@ const STEEPEST_RAD: f64 = 75.0 * std::f64::consts::PI / 180.0;
 ///
 /// It knows the airframe, and its motion without error. Steps of its torques are as long as those of the integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Autopilot {
     /// Bank error to roll rate.
     pub bank_per_s: f64,

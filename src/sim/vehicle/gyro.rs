@@ -11,6 +11,7 @@ pub const MAX_BIAS_RAD_S: f64 = 35.0;
 
 /// What is wrong with a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct GyroErrors {
     /// Density of the white noise of each axis, rad/s/√Hz, 0 to 1. The angle of a time T is wrong by √T of it.
     pub noise_rad_s_rthz: f64,

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 /// are those by p b/2V, q c/2V and r b/2V. Signs are those of FRD: a stable airframe has `roll_by_sideslip` and
 /// `pitch_by_attack` below 0, `yaw_by_sideslip` above 0, and every damping below 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct AirframeParams {
     /// Mass m, kg.
     pub mass_kg: f64,

@@ -13,6 +13,7 @@ const STEEPEST_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
 
 /// How quickly a [`CoordinatedTurn`] follows its commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurnParams {
     /// Time constant of the bank, seconds, above 0.
     pub bank_lag_s: f64,

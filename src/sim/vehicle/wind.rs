@@ -14,6 +14,7 @@ pub const MAX_WIND_M_S: f64 = 100.0;
 /// MIL-F-8785C (1980), σ² 2L/π / (1 + (LΩ)²), taken across and down too, where Dryden's is of the second order. Gusts are
 /// the same over the whole span: they push, and do not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Gusts {
     /// Standard deviation north, east and down, m/s, each 0 to [`MAX_WIND_M_S`].
     pub intensity_m_s: DVec3,

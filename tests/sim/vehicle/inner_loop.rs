@@ -1,7 +1,7 @@
 //! What the airframe does under its commands, against the figures of the prototype that it follows.
 
 use viewsphere::sim::vehicle::{Airframe, AirframeParams, Autopilot, STEP_S, Vehicle, Wind};
-use viewsphere::steer::{Command, SteerConfig};
+use viewsphere::steer::{Command, Response};
 
 use super::*;
 
@@ -176,7 +176,7 @@ fn no_command_and_no_step_makes_a_state_that_is_not_finite() {
 
 /// How far the roll and the track are from a delay, a largest rate and a time constant, degrees, in 0.8 s after steps of the
 /// command.
-fn off_deg(lag_s: f64, config: &SteerConfig) -> [f64; 2] {
+fn off_deg(lag_s: f64, response: &Response) -> [f64; 2] {
     let track = |state: &VehicleState| state.velocity_ned_m_s.y.atan2(state.velocity_ned_m_s.x);
     let mut most: [f64; 2] = [0.0; 2];
     for [from, to] in [[0.0, 60.0], [-60.0, 60.0], [40.0, -60.0]] {
@@ -186,8 +186,8 @@ fn off_deg(lag_s: f64, config: &SteerConfig) -> [f64; 2] {
         let speed_m_s = before.velocity_ned_m_s.length();
         for (k, state) in (0..).zip(fly(&mut plane, &bank(to), 0.8)) {
             if f64::from(k) * STEP_S >= lag_s {
-                let rate = (to.to_radians() - rolled) / config.bank_time_s;
-                rolled += STEP_S * rate.clamp(-config.bank_rate_rad_s, config.bank_rate_rad_s);
+                let rate = (to.to_radians() - rolled) / response.bank_time_s;
+                rolled += STEP_S * rate.clamp(-response.bank_rate_rad_s, response.bank_rate_rad_s);
             }
             let step = (track(&state) - track(&before)).sin().asin();
             turned += step - STEP_S * 9.81 * rolled.tan() / speed_m_s;
@@ -203,10 +203,10 @@ fn off_deg(lag_s: f64, config: &SteerConfig) -> [f64; 2] {
 /// 8 m that it flies meanwhile.
 #[test]
 fn it_rolls_and_turns_as_steering_takes_it_to() {
-    let config = SteerConfig::default();
-    let found = off_deg(config.lag_s, &config);
+    let response = Response::default();
+    let found = off_deg(response.lag_s, &response);
     println!("off by up to {found:.1?}°");
     assert!(!(found[0] > 6.0) && !(found[1] > 4.0), "{found:?}");
-    let at_once = off_deg(0.0, &config);
+    let at_once = off_deg(0.0, &response);
     assert!(at_once[0] > 9.0 && at_once[1] > 6.0, "{at_once:?}");
 }

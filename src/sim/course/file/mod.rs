@@ -26,16 +26,13 @@
 //! [`Surface`](crate::sim::Surface) has them. A box has either `yaw_rad` or `axes`, the directions of its three edges, or
 //! neither. A surface's place in the list is part of its texture.
 
-mod members;
+mod format;
+mod problem;
 mod read;
-mod unique;
 mod write;
 
 pub use self::read::{decode, read};
 pub use self::write::{encode, write};
-
-const FORMAT: &str = "viewsphere course";
-const VERSION: u64 = 1;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

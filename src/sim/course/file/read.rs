@@ -2,12 +2,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use glam::{DMat3, DVec2, DVec3};
-use serde_json::Value;
+use glam::{DMat3, DVec3};
+use serde_json::value::RawValue;
 
-use super::members::Members;
-use super::unique::Unique;
-use super::{FORMAT, VERSION};
+use super::format::{
+    CourseFile, Cuboid, Cylinder, FORMAT, Ground, Head, Kind, Number, Plane, Rectangle, SurfaceHead, VERSION,
+    Wall,
+};
+use super::problem::Part;
 use crate::error::{Error, Result};
 use crate::sim::course::{Course, MAX_SURFACES, wall_between};
 use crate::sim::{Surface, World};
@@ -36,90 +38,74 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Course> {
         let expected = format!("at most {MAX_FILE} bytes");
         return Err(Error::format(path, "file length", format!("over {MAX_FILE} bytes"), expected));
     }
-    let Unique(value) = serde_json::from_slice(bytes)
-        .map_err(|error| Error::format(path, "course file", format!("broken: {error}"), "JSON"))?;
-    let mut file = Members::new(path, "course file", String::new(), value)?;
-    let format = file.text("format", &format!("{FORMAT:?}"))?;
-    if format != FORMAT {
-        return Err(file.wrong("format", format_args!("{format:?}"), format_args!("{FORMAT:?}")));
+    let part = Part { path, what: "course file", surface: None };
+    // Another version may have other members.
+    let head: Head = part.read(bytes)?;
+    if head.format != FORMAT {
+        return Err(part.wrong("format", format_args!("{:?}", head.format), format_args!("{FORMAT:?}")));
     }
-    let version = file.whole("version")?;
-    if version != VERSION {
-        return Err(file.wrong("version", version, VERSION));
+    if head.version != VERSION {
+        return Err(part.wrong("version", head.version, VERSION));
     }
-    let optional = |file: &mut Members<'_>, key| if file.has(key) { file.number(key) } else { Ok(0.0) };
+    let file: CourseFile<&RawValue> = part.read(bytes)?;
+    if file.surfaces.len() > MAX_SURFACES {
+        return Err(part.wrong("surfaces", file.surfaces.len(), format_args!("at most {MAX_SURFACES}")));
+    }
+    let surfaces = (0..).zip(&file.surfaces).map(|(i, raw)| {
+        let part = Part { path, what: "surface", surface: Some(i) };
+        surface(&part, raw.get().as_bytes()).map_err(|error| part.in_file(error))
+    });
     let course = Course {
-        name: file.text("name", "a text")?,
-        seed: if file.has("seed") { file.whole("seed")? } else { 0 },
-        start_ned_m: file.numbers("start_ned_m")?.into(),
-        start_yaw_rad: optional(&mut file, "start_yaw_rad")?,
-        goal_yaw_rad: optional(&mut file, "goal_yaw_rad")?,
-        length_m: file.number("length_m")?,
-        altitude_m: file.numbers("altitude_m")?,
-        centre_line_m: match file.has("centre_line_m") {
-            true => file.rows("centre_line_m")?.into_iter().map(DVec2::from_array).collect(),
-            false => Vec::new(),
-        },
-        world: World { surfaces: surfaces(path, &mut file)?, up_world: DVec3::NEG_Z },
+        world: World { surfaces: surfaces.collect::<Result<_>>()?, up_world: DVec3::NEG_Z },
+        name: file.name,
+        seed: file.seed,
+        start_ned_m: Number::values(file.start_ned_m),
+        start_yaw_rad: file.start_yaw_rad.0,
+        goal_yaw_rad: file.goal_yaw_rad.0,
+        length_m: file.length_m.0,
+        altitude_m: Number::values(file.altitude_m),
+        centre_line_m: file.centre_line_m.into_iter().map(Number::values).collect(),
     };
-    file.end(
-        "format, version, name, seed, start_ned_m, start_yaw_rad, goal_yaw_rad, length_m, altitude_m, \
-         centre_line_m or surfaces",
-    )?;
-    course.validate().map_err(|error| file.in_file(error))?;
+    course.validate().map_err(|error| part.in_file(error))?;
     Ok(course)
 }
 
-fn surfaces(path: &Path, file: &mut Members<'_>) -> Result<Vec<Surface>> {
-    let list = file.list("surfaces")?;
-    if list.len() > MAX_SURFACES {
-        return Err(file.wrong("surfaces", list.len(), format_args!("at most {MAX_SURFACES}")));
-    }
-    list.into_iter().enumerate().map(|(i, value)| surface(path, i, value)).collect()
-}
-
-fn surface(path: &Path, i: usize, value: Value) -> Result<Surface> {
-    let mut members = Members::new(path, "surface", format!(" in surface {i}"), value)?;
-    let kinds = "ground, plane, wall, rectangle, cylinder or box";
-    let kind = members.text("kind", kinds)?;
-    let vector = |members: &mut Members<'_>, key| members.numbers(key).map(DVec3::from_array);
-    let (surface, known) = match kind.as_str() {
-        "ground" => (Surface::plane(DVec3::ZERO, DVec3::NEG_Z), "kind"),
-        "plane" => {
-            let [point, normal] = [vector(&mut members, "point_m")?, vector(&mut members, "normal")?];
-            (Surface::plane(point, normal), "kind, point_m or normal")
+fn surface(part: &Part<'_>, text: &[u8]) -> Result<Surface> {
+    let SurfaceHead { kind } = part.read(text)?;
+    match kind {
+        Kind::Ground => {
+            let Ground { .. } = part.read(text)?;
+            Surface::plane(DVec3::ZERO, DVec3::NEG_Z)
         }
-        "wall" => {
-            let [from, to] = [members.numbers("from_m")?, members.numbers("to_m")?].map(DVec2::from_array);
-            (wall_between(from, to, members.number("height_m")?), "kind, from_m, to_m or height_m")
+        Kind::Plane => {
+            let Plane { point_m, normal, .. } = part.read(text)?;
+            Surface::plane(Number::values(point_m), Number::values(normal))
         }
-        "rectangle" => {
-            let centre = vector(&mut members, "centre_m")?;
-            let [to_right, to_top] = [vector(&mut members, "to_right_m")?, vector(&mut members, "to_top_m")?];
-            (Surface::rectangle(centre, to_right, to_top), "kind, centre_m, to_right_m or to_top_m")
+        Kind::Wall => {
+            let Wall { from_m, to_m, height_m, .. } = part.read(text)?;
+            wall_between(Number::values(from_m), Number::values(to_m), height_m.0)
         }
-        "cylinder" => {
-            let [base, top] = [vector(&mut members, "base_m")?, vector(&mut members, "top_m")?];
-            (Surface::cylinder(base, top, members.number("radius_m")?), "kind, base_m, top_m or radius_m")
+        Kind::Rectangle => {
+            let Rectangle { centre_m, to_right_m, to_top_m, .. } = part.read(text)?;
+            let [centre, to_right, to_top] = [centre_m, to_right_m, to_top_m].map(Number::values);
+            Surface::rectangle(centre, to_right, to_top)
         }
-        "box" => {
-            let [centre, edges] = [vector(&mut members, "centre_m")?, vector(&mut members, "edges_m")?];
-            let turn = if members.has("axes") {
-                let axes = members.rows::<3>("axes")?;
-                let axes: [[f64; 3]; 3] = axes
-                    .try_into()
-                    .map_err(|axes: Vec<_>| members.wrong("axes", axes.len(), "three vectors"))?;
-                DMat3::from_cols_array_2d(&axes)
-            } else if members.has("yaw_rad") {
-                DMat3::from_rotation_z(members.number("yaw_rad")?)
-            } else {
-                DMat3::IDENTITY
+        Kind::Cylinder => {
+            let Cylinder { base_m, top_m, radius_m, .. } = part.read(text)?;
+            Surface::cylinder(Number::values(base_m), Number::values(top_m), radius_m.0)
+        }
+        Kind::Box => {
+            let Cuboid { centre_m, edges_m, yaw_rad, axes, .. } = part.read(text)?;
+            let turn = match (yaw_rad, axes) {
+                (None, None) => DMat3::IDENTITY,
+                (Some(yaw_rad), None) => DMat3::from_rotation_z(yaw_rad.0),
+                (None, Some(axes)) => DMat3::from_cols_array_2d(&axes.map(Number::values)),
+                (Some(yaw_rad), Some(_)) => {
+                    let found = format_args!("{} beside axes", yaw_rad.0);
+                    return Err(part.wrong("yaw_rad", found, "one of the two, or neither"));
+                }
             };
-            (Surface::cuboid(centre, turn, edges), "kind, centre_m, edges_m, and yaw_rad or axes")
+            Surface::cuboid(Number::values(centre_m), turn, Number::values(edges_m))
         }
-        other => return Err(members.wrong("kind", format_args!("{other:?}"), kinds)),
-    };
-    members.place(format!(" in surface {i}, a {kind}"));
-    members.end(known)?;
-    surface.map_err(|error| members.in_file(error))
+    }
 }

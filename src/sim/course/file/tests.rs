@@ -100,14 +100,14 @@ fn what_is_wrong_is_named_with_its_place() {
             "\"name\": \"a\\nb\"",
             "name is \"a\\nb\", expected a line of 1 to 200 characters",
         ),
-        ("\"name\": \"yard\"", "\"nam\": \"yard\"", "name is missing, expected a text"),
+        ("\"name\": \"yard\"", "\"nam\": \"yard\"", "name is missing, expected it once"),
         ("\"name\"", "\"gaol\": 3, \"name\"", "member is \"gaol\", expected format, version, name, seed, "),
         ("120", "0", "length_m is 0, expected above 0 to 1000000"),
-        ("120", "1e300", "length_m is 1e+300, expected a number within ±1000000"),
+        ("120", "1e300", "length_m is 1e300, expected a number within ±1000000"),
         ("120", "NaN", "course file is broken: expected value at line 3 column 43, expected JSON"),
         ("120", "1e999", "course file is broken: number out of range at line 3"),
         ("[2, 30]", "[30, 2]", "altitude_m is 30 to 2, expected a band from 0 or more to something higher"),
-        ("[2, 30]", "[2]", "altitude_m is [2], expected 2 numbers in brackets"),
+        ("[2, 30]", "[2]", "altitude_m is of length 1, expected an array of length 2"),
         (
             "-10]",
             "10]",
@@ -118,55 +118,59 @@ fn what_is_wrong_is_named_with_its_place() {
             "-31]",
             "start_ned_m is [0, 0, -31], at an altitude of 31 m, expected one within altitude_m, 2 to 30 m",
         ),
-        (
-            "\"version\": 1",
-            "\"version\": 1, \"version\": 1",
-            "course file is broken: member \"version\" is there twice at line 2 column 5",
-        ),
-        (
-            "0.3",
-            "0.3, \"radius_m\": 0.4",
-            "course file is broken: member \"radius_m\" is there twice at line 7",
-        ),
+        ("\"version\": 1", "\"version\": 1, \"version\": 1", "version is there twice, expected it once"),
+        ("0.3", "0.3, \"radius_m\": 0.4", "radius_m is there twice in surface 2, expected it once"),
         (
             "\"ground\"",
             "\"cone\"",
-            "kind is \"cone\" in surface 0, expected ground, plane, wall, rectangle, cylinder or box",
+            "kind is \"cone\" in surface 0, expected ground, plane, wall, rectangle, cylinder, box",
         ),
-        ("\"ground\"", "3", "kind is 3 in surface 0, expected ground, "),
+        ("\"ground\"", "3", "kind is 3 in surface 0, expected the name of a kind"),
         (
             "{\"kind\": \"ground\"}",
             "\"ground\"",
             "surface is \"ground\" in surface 0, expected an object in braces",
         ),
-        (", \"radius_m\": 0.3", "", "radius_m is missing in surface 2, expected a number within ±1000000"),
-        ("0.3", "-0.3", "cylinder radius is -0.3 in surface 2, a cylinder, expected above 0 m and finite"),
-        (
-            "-25]",
-            "0]",
-            "cylinder axis is [0, 0, 0] in surface 2, a cylinder, expected a finite vector that is not 0",
-        ),
+        (", \"radius_m\": 0.3", "", "radius_m is missing in surface 2, expected it once"),
+        ("0.3", "-0.3", "cylinder radius is -0.3 in surface 2, expected above 0 m and finite"),
+        ("-25]", "0]", "cylinder axis is [0, 0, 0] in surface 2, expected a finite vector that is not 0"),
         (
             "[12, 16, 20]",
             "[12, 16, null]",
-            "edges_m is [12,16,null] in surface 3, expected 3 numbers in brackets",
+            "edges_m[2] is null in surface 3, expected a number within ±1000000",
         ),
         (
             "\"yaw_rad\"",
             "\"roll_rad\"",
-            "member is \"roll_rad\" in surface 3, a box, expected kind, centre_m, edges_m, and ",
+            "member is \"roll_rad\" in surface 3, expected kind, centre_m, edges_m, yaw_rad, axes",
         ),
         (
             "\"yaw_rad\": 0.5",
             "\"axes\": [[1, 0, 0], [0, 1, 0]]",
-            "axes is 2 in surface 3, expected three vectors",
+            "axes is of length 2 in surface 3, expected an array of length 3",
         ),
         (
             "\"yaw_rad\": 0.5",
             "\"axes\": [[2, 0, 0], [0, 1, 0], [0, 0, 1]]",
-            "world_from_box is [[2, 0, 0], [0, 1, 0], [0, 0, 1]] in surface 3, a box, expected a rotation",
+            "world_from_box is [[2, 0, 0], [0, 1, 0], [0, 0, 1]] in surface 3, expected a rotation",
         ),
         ("\"surfaces\": [", "\"surfaces\": 3, \"rest\": [", "surfaces is 3, expected a list in brackets"),
+        (
+            "\"yaw_rad\": 0.5",
+            "\"yaw_rad\": 0.5, \"axes\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+            "yaw_rad is 0.5 beside axes in surface 3, expected one of the two, or neither",
+        ),
+        (
+            "\"yaw_rad\": 0.5",
+            "\"yaw_rad\": null",
+            "yaw_rad is null in surface 3, expected a number within ±1000000",
+        ),
+        (
+            "{\"kind\": \"ground\"}",
+            "[\"ground\"]",
+            "surface is a list in surface 0, expected an object in braces",
+        ),
+        ("0.3", "1e999", "surface is broken: number out of range in surface 2, expected JSON"),
         ("]\n}", "]\n", "course file is broken: EOF while parsing an object at line"),
     ];
     let mut wrong = vec![];
@@ -177,6 +181,39 @@ fn what_is_wrong_is_named_with_its_place() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_file_that_is_no_object_is_refused() {
+    for (text, found) in [("", "broken: EOF"), ("[]", "a list"), ("3", "3"), (" \"yard\"", "\"yard\"")] {
+        let message = load(text).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("a.json: course file is {found}")), "{message}");
+    }
+    let message = load("[\"viewsphere course\", 1]").unwrap_err().to_string();
+    assert_eq!(message, "a.json: course file is a list, expected an object in braces");
+}
+
+/// What another version has beside is no reason to say anything but that it is another one.
+#[test]
+fn another_version_is_named_first() {
+    assert_eq!(error("\"version\": 1", "\"version\": 2, \"fog\": []"), "a.json: version is 2, expected 1");
+}
+
+#[test]
+fn a_file_that_is_written_has_a_line_for_each_surface() {
+    let text = encode(&load(YARD).unwrap()).unwrap();
+    assert!(text.starts_with("{\n  \"format\": \"viewsphere course\",\n  \"version\": 1,\n"), "{text}");
+    assert!(text.contains("\n  \"start_ned_m\": [0.0, 0.0, -10.0],\n"), "{text}");
+    assert!(
+        text.contains("\n  \"surfaces\": [\n    {\"kind\": \"ground\"},\n    {\"kind\": \"rectangle\", "),
+        "{text}"
+    );
+    assert!(text.ends_with("}\n  ]\n}\n") && !text.contains("centre_line_m"), "{text}");
+    let bent = Course { centre_line_m: vec![DVec2::ZERO, DVec2::X], ..load(YARD).unwrap() };
+    let text = encode(&bent).unwrap();
+    assert!(text.contains("\n  \"centre_line_m\": [\n    [0.0, 0.0],\n    [1.0, 0.0]\n  ],\n"), "{text}");
+    let empty = Course { world: World { surfaces: vec![], ..bent.world }, ..bent };
+    assert!(encode(&empty).unwrap().ends_with("\"surfaces\": []\n}\n"));
 }
 
 #[test]

@@ -1,0 +1,121 @@
+//! The files of a flight, and what is said of it.
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::log::End;
+use super::measured::PICTURE;
+use super::recorder::Recorder;
+use super::setup::SetupArgs;
+use super::timing::Timing;
+use super::{cues, log, measured, shown};
+use crate::backend::Backend;
+use crate::cli::print;
+use crate::error::{Error, Result};
+use crate::io::{remove, write_bytes};
+use crate::report::flight::FlightReport;
+use crate::sim::flight::{Flight, Summary};
+
+const LOG: &str = "flight.jsonl";
+const TIMING: &str = "timing.json";
+const PAGE: &str = "report.html";
+pub(super) const VIDEO: &str = "flight.y4m";
+/// All files of a flight.
+pub(super) const FILES: [&str; 5] = [LOG, TIMING, PAGE, VIDEO, PICTURE];
+
+/// Checks that the files which would be replaced in a folder are those of a flight.
+pub(super) fn spare(folder: &Path) -> Result<()> {
+    let begins = |line: String| line.starts_with("{\"viewsphere\":");
+    let log = File::open(folder.join(LOG)).map(BufReader::new);
+    let flown = log.is_ok_and(|log| log.lines().next().is_some_and(|line| line.is_ok_and(begins)));
+    let there = FILES.map(|name| folder.join(name)).into_iter().find(|path| path.is_file());
+    match there {
+        Some(path) if !flown => {
+            let expected = "a folder without it, or one with the flight.jsonl of an earlier flight";
+            Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A flight that is over.
+pub(super) struct Flown<'a> {
+    pub(super) flight: &'a Flight,
+    pub(super) recorder: &'a Recorder,
+    pub(super) summary: &'a Summary,
+    /// What drew the pictures and what computed the flow; none where there are no pictures.
+    pub(super) names: Option<[String; 2]>,
+}
+
+impl Flown<'_> {
+    /// Writes all files but the video, which was written while it flew, and says how the flight ended.
+    pub(super) fn write(&self, folder: &Path, setup: &SetupArgs) -> Result<String> {
+        let Recorder { records, costs, picture, .. } = self.recorder;
+        let timing = costs.timing(self.names.clone());
+        let page = FlightReport {
+            course: self.flight.course(),
+            config: self.flight.config(),
+            backend: &self.computed_on(),
+            records,
+            summary: self.summary,
+            costs: costs.frames(),
+        };
+        let texts = [self.log(setup)?, print::one_line(&timing)? + "\n", page.html()];
+        for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
+            write_bytes(folder.join(name), text.as_bytes())?;
+        }
+        // That of an earlier flight would be taken for this one's.
+        remove(folder.join(PICTURE))?;
+        let picture = picture.as_ref().map(|picture| picture.write(folder)).transpose()?;
+        let told = self.text(folder, &timing);
+        let measured = measured::text(self.summary.measured.as_ref(), picture);
+        Ok(std::iter::once(told).chain(measured).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// The flight as lines of JSON.
+    fn log(&self, setup: &SetupArgs) -> Result<String> {
+        let mut lines = vec![log::header(self.flight, setup, self.names.as_ref())?];
+        for record in &self.recorder.records {
+            lines.push(log::frame(record)?);
+        }
+        lines.push(print::one_line(&End::from(self.summary))?);
+        Ok(lines.join("\n") + "\n")
+    }
+
+    fn text(&self, folder: &Path, timing: &Timing) -> String {
+        let Self { summary, recorder, .. } = self;
+        let reasons = recorder.records.iter().filter_map(|record| record.invalid.as_deref());
+        let video = fs::metadata(folder.join(VIDEO))
+            .map_or(String::new(), |file| format!(", and a video of {:.0} MB", 1e-6 * file.len() as f64));
+        format!(
+            "outcome    {} after {:.1} s and {:.0} m\n\
+             clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
+             way        {:.1} m flown, {:.1} % of it towards the goal\n\
+             control    {:.1} °/s of roll (root mean square)\n\
+             cues       {}\n\
+             speed      {}\n\
+             log        in {}{video}",
+            summary.outcome,
+            summary.time_s,
+            shown(summary.progress_m),
+            summary.least_clearance_m,
+            summary.low_clearance_m,
+            summary.path_m,
+            100.0 * summary.efficiency(),
+            summary.roll_rate_rad_s.to_degrees(),
+            cues::text(summary.invalid, reasons),
+            timing.text(),
+            folder.display(),
+        )
+    }
+
+    /// What computed, for the reader; without pictures nothing but the CPU does.
+    fn computed_on(&self) -> String {
+        match &self.names {
+            None => Backend::Cpu.name(),
+            Some([renderer, flow]) if renderer == flow => flow.clone(),
+            Some([renderer, flow]) => format!("{flow}, pictures on {renderer}"),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! A flight, frame by frame.
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use super::accuracy::Divergences;
+use super::clock::{self, STEPS};
+use super::config::FlightConfig;
+use super::cost::Cost;
+use super::fault::FaultKind;
+use super::perception::{Perception, SensorInput};
+use super::record::Record;
+use super::sensor_model::{SensorModel, gyro_config};
+use super::summary::{Outcome, Summary, Tally};
+use crate::backend::Backend;
+use crate::camera::{Camera, FRD_FROM_CAMERA};
+use crate::error::Result;
+use crate::frame::Image;
+use crate::pipeline::Cue;
+use crate::sim::vehicle::{AirspeedModel, GyroModel, STEP_S, Start, VaneModel, Vehicle, VehicleState, Wind};
+use crate::sim::{Course, Random};
+use crate::sphere::Heading;
+use crate::steer::{Command, Goal, Observation, SteerConfig, Steering};
+
+/// Standard error of a direction of motion from vanes, radians.
+const VANES_RAD: f64 = 0.035;
+
+/// A flight through a course.
+pub struct Flight {
+    course: Course,
+    config: FlightConfig,
+    vehicle: Box<dyn Vehicle>,
+    sensor: SensorModel,
+    steering: Steering,
+    gyro: GyroModel,
+    airspeed: AirspeedModel,
+    vanes: Option<VaneModel>,
+    frame: u64,
+    /// Decided, and not acting yet.
+    waiting: VecDeque<Command>,
+    least_clearance_m: f64,
+    tally: Tally,
+    cost: Cost,
+    states: Vec<VehicleState>,
+}
+
+/// What can be looked at of a frame while the flight goes on.
+#[derive(Clone, Copy)]
+pub struct FlightFrame<'a> {
+    /// The picture, if the sensor is a camera.
+    pub image: Option<&'a Image>,
+    /// What the pipeline says, if there is one and it says something.
+    pub cue: Option<&'a Cue<'a>>,
+    /// What became of it.
+    pub steering: &'a Steering,
+    /// The divergence in each cell of the view, where it is [measured](FlightConfig::measure).
+    pub divergences: Option<&'a Divergences>,
+    /// What is kept.
+    pub record: &'a Record,
+}
+
+impl Flight {
+    /// A flight from the beginning of a course. The first backend draws the pictures, the second one computes the flow.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range, also for a fault that begins after the flight is
+    /// given up; as [`Renderer::new`](crate::sim::Renderer::new) and [`Pipeline::new`](crate::Pipeline::new).
+    pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
+        config.validate()?;
+        let mut config = config.clone();
+        config.pipeline.gyro = Some(gyro_config());
+        config.pipeline.fields.looming |= config.measure;
+        config.pipeline.fields.cells |= config.measure;
+        course.validate()?;
+        config.check_faults_in(course)?;
+        let random = Random::new(course.seed);
+        let start = Start {
+            position_ned_m: course.start_ned_m,
+            yaw_rad: course.start_yaw_rad,
+            speed_m_s: config.speed_m_s,
+        };
+        let wind = Wind::new(config.wind_ned_m_s, config.gusts, random.fork(1).next_u64())?;
+        let steer = SteerConfig {
+            params: config.steer.clone(),
+            aircraft: config.body.aircraft(config.latency_frames),
+        };
+        Ok(Self {
+            course: course.clone(),
+            vehicle: config.body.vehicle(&start, wind)?,
+            sensor: SensorModel::new(backends, &course.world, &config, random.fork(2))?,
+            steering: Steering::new(steer)?,
+            gyro: GyroModel::new(&config.gyro, random.fork(3).next_u64())?,
+            airspeed: AirspeedModel::new(config.airspeed_error, random.fork(4).next_u64())?,
+            vanes: match &config.vanes {
+                Some(errors) => Some(VaneModel::new(errors, random.fork(5).next_u64())?),
+                None => None,
+            },
+            frame: 0,
+            waiting: std::iter::repeat_n(Command::default(), config.latency_frames as usize).collect(),
+            least_clearance_m: f64::INFINITY,
+            tally: Tally::default(),
+            cost: Cost::default(),
+            states: Vec::new(),
+            config,
+        })
+    }
+
+    /// Where it leads through.
+    pub fn course(&self) -> &Course {
+        &self.course
+    }
+
+    /// How it is flown.
+    pub fn config(&self) -> &FlightConfig {
+        &self.config
+    }
+
+    /// The pinhole in whose pictures the view is looked at.
+    pub fn ideal(&self) -> &Camera {
+        self.sensor.ideal()
+    }
+
+    /// What the parts of the last frame cost.
+    pub fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    /// The vehicle's states from the last frame to the next one, [`STEP_S`] apart and each of the two included: what a gyro
+    /// or a faster camera on board would have seen. The last is missing where the flight ended.
+    pub fn states(&self) -> &[VehicleState] {
+        &self.states
+    }
+
+    /// Flies on to the end of the flight, and shows each frame.
+    ///
+    /// # Errors
+    /// As [`Flight::step`].
+    pub fn fly(&mut self, mut show: impl FnMut(&FlightFrame<'_>) -> Result<()>) -> Result<Summary> {
+        loop {
+            if let Some(summary) = self.step(&mut show)? {
+                return Ok(summary);
+            }
+        }
+    }
+
+    /// Flies on by a frame, and shows it. The summary, when the flight has ended.
+    ///
+    /// # Errors
+    /// What drawing, the pipeline and `show` fail with, apart from faults that a flight goes on with.
+    pub fn step(&mut self, mut show: impl FnMut(&FlightFrame<'_>) -> Result<()>) -> Result<Option<Summary>> {
+        let state = self.state(0);
+        self.states.clear();
+        self.states.push(state);
+        self.push_gyro(&state);
+        let motion_body = self.vanes.as_mut().map(|vanes| vanes.direction_body(&state));
+        let Self { course, config, sensor, steering, .. } = self;
+        let input = SensorInput {
+            world: &course.world,
+            pose: state.camera_pose(),
+            velocity_world_m_s: state.velocity_ned_m_s,
+            heading: motion_body.map(|motion| Heading {
+                direction: FRD_FROM_CAMERA.transpose() * motion,
+                error_rad: VANES_RAD,
+            }),
+            frame: self.frame,
+            time_s: state.time_s,
+        };
+        let mut cost = Cost::default();
+        let perception = sensor.sense(&input, config, &mut cost)?;
+        let begun = Instant::now();
+        let observation = Observation {
+            time_s: state.time_s,
+            ned_from_body: state.world_from_body,
+            airspeed_m_s: self.airspeed.speed_m_s(&state),
+            motion_body,
+            goal: Goal {
+                yaw_rad: course.goal_yaw_rad,
+                too_low_m: Some(state.position_ned_m.z - course.start_ned_m.z),
+            },
+            view: perception.view,
+        };
+        let decision = steering.update(&observation);
+        cost.steer = begun.elapsed();
+        self.waiting.push_back(decision.command);
+        let acting = self.waiting.pop_front().unwrap_or(decision.command);
+        let record = Record::of(course, &input, &state, &perception, decision, acting);
+        let Perception { image, divergences, ref cue, .. } = perception;
+        show(&FlightFrame { image, cue: cue.as_ref(), steering, divergences, record: &record })?;
+        let begun = Instant::now();
+        self.tally.add(&record);
+        let outcome = self.advance(&acting, &record);
+        cost.vehicle = begun.elapsed();
+        self.cost = cost;
+        self.frame += 1;
+        Ok(outcome.map(|outcome| self.tally.summary(outcome, &record, self.least_clearance_m)))
+    }
+
+    /// Moves the vehicle to the next frame.
+    fn advance(&mut self, acting: &Command, record: &Record) -> Option<Outcome> {
+        self.least_clearance_m = self.least_clearance_m.min(record.clearance_m);
+        if record.progress_m >= self.course.length_m {
+            return Some(Outcome::Reached);
+        }
+        if record.time_s > self.config.longest_s(&self.course) {
+            return Some(Outcome::TimedOut);
+        }
+        for step in 1..=STEPS {
+            self.vehicle.advance(acting, STEP_S);
+            let state = self.state(step);
+            let clearance_m = self.course.world.clearance_m(state.position_ned_m);
+            self.least_clearance_m = self.least_clearance_m.min(clearance_m);
+            if !(clearance_m >= self.config.radius_m) {
+                return Some(Outcome::Crashed);
+            }
+            let [low_m, high_m] = self.course.altitude_m;
+            if !(low_m..=high_m).contains(&-state.position_ned_m.z) {
+                return Some(Outcome::LeftBand);
+            }
+            self.states.push(state);
+            // That of the last step is the next frame's own.
+            if step < STEPS {
+                self.push_gyro(&state);
+            }
+        }
+        None
+    }
+
+    /// The vehicle's state after so many steps of a frame.
+    fn state(&self, step: u32) -> VehicleState {
+        VehicleState { time_s: clock::time_s(self.frame, step), ..self.vehicle.state() }
+    }
+
+    fn push_gyro(&mut self, state: &VehicleState) {
+        let mut sample = self.gyro.sample(state);
+        for fault in self.config.faults.iter().filter(|fault| fault.acts(state.time_s)) {
+            match fault.kind {
+                FaultKind::GyroLost => return,
+                FaultKind::GyroBias(bias_rad_s) => sample.gyro_rad_s += bias_rad_s,
+                _ => (),
+            }
+        }
+        self.sensor.push_gyro(sample);
+    }
+}
