@@ -4,10 +4,12 @@
 //! in the list below. From the list follow its value of [`Algorithm`], its name and its parameters' flags on the command
 //! line and in JSON, its tests of determinism, sizes and streams, and its place in `crosscheck` and `bench`.
 
+mod coarse_to_fine;
 mod estimator;
 mod flow_plan;
 mod levels;
 mod parameter;
+mod pyramid;
 
 pub use estimator::{Estimator, Evidence, Stages, Wanted};
 pub(crate) use flow_plan::gray_step;
@@ -113,6 +115,7 @@ macro_rules! estimators {
 estimators!(
     ($)
     farneback: Farneback,
+    lucas_kanade: LucasKanade,
 );
 
 pub use farneback::{Outside, Update, Window};

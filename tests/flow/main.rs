@@ -10,6 +10,7 @@ mod confidence;
 mod data;
 mod determinism;
 mod engine;
+mod estimators;
 mod euroc;
 mod imu;
 mod increments;

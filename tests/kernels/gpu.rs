@@ -230,9 +230,9 @@ fn asynchronous_calls_do_what_the_blocking_ones_do() {
     let plan = flow::plan(&config.algorithm, Size::new(64, 48), config.format, config.options()).unwrap();
     let executor = drive(Some(&gpu), sendable(GpuExecutor::open(&gpu, &plan))).unwrap();
     let values: Vec<f32> = (0..64).map(|i| i as f32).collect();
-    executor.write(plan.frame, &values);
-    assert_eq!(drive(Some(&gpu), sendable(executor.fetch(plan.frame, 64))).unwrap(), values);
-    assert_eq!(executor.read(plan.frame, 64).unwrap(), values);
+    executor.write(plan.inputs[0].bufs[0], &values);
+    assert_eq!(drive(Some(&gpu), sendable(executor.fetch(plan.inputs[0].bufs[0], 64))).unwrap(), values);
+    assert_eq!(executor.read(plan.inputs[0].bufs[0], 64).unwrap(), values);
     drive(Some(&gpu), sendable(gpu.finished())).unwrap();
 }
 

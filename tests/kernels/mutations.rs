@@ -7,9 +7,9 @@ use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
     ALL, advance, area, binomial, cast, cell_mean, cells, certain_expansion_x, certain_expansion_y,
-    certain_matrices, compare, confidence, expansion_x, expansion_y, lens_map, looming, luma, matrices,
-    prime, remap, resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent, trust, upsample,
-    weigh, window_y,
+    certain_matrices, compare, confidence, expansion_x, expansion_y, gradient_equations, lens_map, looming,
+    luma, matrices, prime, remap, resample_x, resample_y, residual, sectors, sensor, shade, solve, tangent,
+    trust, unweight, upsample, warp, weigh, window_y,
 };
 
 use crate::need;
@@ -89,6 +89,12 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&tangent::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),
     (&trust::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
     (&trust::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&warp::KERNEL, "place <= last", "place < last"),
+    (&warp::KERNEL, "select(0.0, share, inside)", "share"),
+    (&gradient_equations::KERNEL, "0.125 * ((above.i.z", "0.25 * ((above.i.z"),
+    (&gradient_equations::KERNEL, "vec2f(t * t, share)", "vec2f(t, share)"),
+    (&gradient_equations::KERNEL, "max(y, 1u) - 1u", "y"),
+    (&unweight::KERNEL, "select(0.0, value, share >= 1e-3)", "value"),
     (&cell_mean::KERNEL, "select(0.0, 1.0, there)", "1.0"),
     (&cell_mean::KERNEL, "* certainty[here]", "+ certainty[here]"),
     (&cells::KERNEL, " - m.xy / z * seen.flow.z", ""),

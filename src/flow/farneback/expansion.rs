@@ -3,9 +3,10 @@
 use super::Farneback;
 use super::certain::Certain;
 use crate::flow::Level;
+use crate::flow::pyramid::Pyramid;
 use crate::frame::Size;
 use crate::kernels::tables::{self, Applicability};
-use crate::kernels::{binomial, expansion_x, expansion_y, resample_x, resample_y};
+use crate::kernels::{expansion_x, expansion_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Where a level's expansion lies: `f(x) ≈ xᵀA x + bᵀx + c`.
@@ -30,19 +31,11 @@ pub(super) struct Expansions {
     applicability: Applicability,
     weights_y: BufId,
     weights_x: BufId,
-    columns: BufId,
     image: BufId,
     /// Of the expansion without certainty.
     moments: Option<BufId>,
-    reductions: Vec<Reduction>,
-}
-
-/// How the full picture is read on one level.
-struct Reduction {
-    level: Level,
-    gauss: BufId,
-    place_x: BufId,
-    place_y: BufId,
+    pyramid: Pyramid,
+    sizes: Vec<Size>,
 }
 
 impl Expansions {
@@ -78,27 +71,16 @@ impl Expansions {
                 ),
             ),
             applicability,
-            columns: bufs.computed("smoothed columns", Shape::planar(size, 1)),
             image: bufs.computed("level's image", Shape::planar(size, 1)),
             moments: certain.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
             certain,
-            reductions: (levels.iter().enumerate().skip(1))
-                .map(|(k, &level)| Reduction {
-                    level,
-                    gauss: bufs
-                        .constant(format!("Gaussian, level {k}"), tables::gauss(level.sigma, level.taps)),
-                    place_x: bufs
-                        .constant(format!("columns, level {k}"), tables::place(size.width, level.size.width)),
-                    place_y: bufs
-                        .constant(format!("rows, level {k}"), tables::place(size.height, level.size.height)),
-                })
-                .collect(),
+            pyramid: Pyramid::new(bufs, size, levels),
+            sizes: levels.iter().map(|level| level.size).collect(),
         }
     }
 
     /// The expansion of a gray picture into this slot. Its certainty is needed if the estimator takes one.
     pub(super) fn steps(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
-        let plane = Shape::planar(self.size, 1);
         let mut steps = Vec::new();
         let pictures = match (&self.certain, certainty) {
             (Some(certain), Some(certainty)) => {
@@ -107,43 +89,13 @@ impl Expansions {
             }
             _ => vec![[gray, self.image]],
         };
-        for &[full, level] in &pictures {
-            steps.push(Step::new(
-                &binomial::KERNEL,
-                "level 0",
-                binomial::Params::new(self.size),
-                &[full],
-                &[(level, plane)],
-            ));
-        }
-        self.expand(&mut steps, 0, self.size, slot);
-        for (i, reduction) in self.reductions.iter().enumerate() {
-            for &picture in &pictures {
-                self.reduce(&mut steps, i + 1, reduction, picture);
+        for (k, size) in self.sizes.iter().enumerate() {
+            for &[full, image] in &pictures {
+                self.pyramid.reduce(&mut steps, k, full, image);
             }
-            self.expand(&mut steps, i + 1, reduction.level.size, slot);
+            self.expand(&mut steps, k, *size, slot);
         }
         steps
-    }
-
-    /// A full picture, smoothed and read at a level's pixels.
-    fn reduce(&self, steps: &mut Vec<Step>, k: usize, reduction: &Reduction, [full, image]: [BufId; 2]) {
-        let Size { width, height } = reduction.level.size;
-        let taps = reduction.level.taps;
-        steps.push(Step::new(
-            &resample_y::KERNEL,
-            format!("level {k}"),
-            resample_y::Params { width: self.size.width, height, in_height: self.size.height, taps },
-            &[full, reduction.gauss, reduction.place_y],
-            &[(self.columns, Shape::planar(Size::new(self.size.width, height), 1))],
-        ));
-        steps.push(Step::new(
-            &resample_x::KERNEL,
-            format!("level {k}"),
-            resample_x::Params { width, height, in_width: self.size.width, taps },
-            &[self.columns, reduction.gauss, reduction.place_x],
-            &[(image, Shape::planar(reduction.level.size, 1))],
-        ));
     }
 
     /// The polynomial expansion of a level's image.

@@ -1,0 +1,149 @@
+//! Coarse to fine: the flow of each level of a pyramid, begun with that of the coarser one.
+
+use super::{Level, Wanted};
+use crate::kernels::{area, tables, upsample};
+use crate::plan::{BufId, Bufs, Shape, Step};
+
+/// The buffers of the flow on each level, and how the coarser level's is read.
+pub(super) struct CoarseToFine {
+    levels: Vec<FlowLevel>,
+    pyr_scale: f64,
+    start: Start,
+}
+
+/// One level's flow and how the coarser level's is read.
+struct FlowLevel {
+    level: Level,
+    /// The finest level's flow is the plan's.
+    flow: Option<BufId>,
+    /// Where every other iteration's flow goes, if each is added to the previous one.
+    other: Option<BufId>,
+    place: Option<[BufId; 2]>,
+}
+
+/// What the coarsest level begins with.
+enum Start {
+    /// No motion.
+    Zero(BufId),
+    /// The given flow, read by these covers.
+    Given([BufId; 2]),
+}
+
+/// One iteration on one level.
+pub(super) struct Iteration {
+    /// The level's number, 0 for the finest.
+    pub(super) k: usize,
+    /// The level.
+    pub(super) level: Level,
+    /// What it is called, for example `level 2, iteration 1`.
+    pub(super) label: String,
+    /// The flow that it begins with: two channels.
+    pub(super) so_far: BufId,
+    /// Where its flow goes: another buffer, if iterations add to the flow so far.
+    pub(super) flow: BufId,
+}
+
+impl CoarseToFine {
+    /// For these levels, finest first. If iterations add to the flow so far, they write by turns to two buffers.
+    pub(super) fn new(bufs: &mut Bufs, levels: &[Level], pyr_scale: f64, wanted: Wanted, adds: bool) -> Self {
+        let (finest, coarsest) = (levels[0].size, levels[levels.len() - 1].size);
+        let start = if wanted.initial_flow {
+            Start::Given([
+                bufs.constant("columns of the given flow", tables::cover(finest.width, coarsest.width)),
+                bufs.constant("rows of the given flow", tables::cover(finest.height, coarsest.height)),
+            ])
+        } else {
+            Start::Zero(bufs.constant("no motion", vec![0.0; Shape::planar(coarsest, 2).len()]))
+        };
+        let flow_level = |(k, &level): (usize, &Level)| FlowLevel {
+            level,
+            flow: (k > 0).then(|| bufs.computed(format!("flow, level {k}"), Shape::planar(level.size, 2))),
+            other: adds
+                .then(|| bufs.computed(format!("flow so far, level {k}"), Shape::planar(level.size, 2))),
+            place: levels.get(k + 1).map(|coarser| {
+                [
+                    bufs.constant(
+                        format!("columns of level {}", k + 1),
+                        tables::place(coarser.size.width, level.size.width),
+                    ),
+                    bufs.constant(
+                        format!("rows of level {}", k + 1),
+                        tables::place(coarser.size.height, level.size.height),
+                    ),
+                ]
+            }),
+        };
+        Self { levels: levels.iter().enumerate().map(flow_level).collect(), pyr_scale, start }
+    }
+
+    /// The steps of all levels, coarsest first, with so many iterations on each, of which `iterate` adds the steps. The
+    /// search begins with `initial`, if the plan has one, and the finest level's flow goes to `flow`.
+    pub(super) fn steps(
+        &self,
+        iterations: u32,
+        initial: BufId,
+        flow: BufId,
+        iterate: impl Fn(&mut Vec<Step>, Iteration),
+    ) -> Vec<Step> {
+        let mut steps = Vec::new();
+        let mut coarser: Option<(BufId, Level)> = None;
+        for (k, level) in self.levels.iter().enumerate().rev() {
+            let own = level.flow.unwrap_or(flow);
+            // The flow after this many iterations: after all of them the level's own.
+            let after = |done: u32| match level.other {
+                Some(other) if !(iterations - done).is_multiple_of(2) => other,
+                _ => own,
+            };
+            let mut so_far = after(0);
+            match (coarser, &self.start) {
+                (Some((flow, of)), _) => steps.push(self.refine(k, level, flow, of, so_far)),
+                (None, Start::Given(cover)) => steps.push(self.reduce(k, level, initial, *cover, so_far)),
+                (None, Start::Zero(zero)) => so_far = *zero,
+            }
+            for i in 1..=iterations {
+                let label = format!("level {k}, iteration {i}");
+                iterate(&mut steps, Iteration { k, level: level.level, label, so_far, flow: after(i) });
+                so_far = after(i);
+            }
+            coarser = Some((own, level.level));
+        }
+        steps
+    }
+
+    /// The coarser level's flow as a beginning.
+    fn refine(&self, k: usize, level: &FlowLevel, coarse: BufId, of: Level, flow: BufId) -> Step {
+        let size = level.level.size;
+        let [place_x, place_y] = level.place.unwrap_or_else(|| unreachable!("a coarser level was computed"));
+        Step::new(
+            &upsample::KERNEL,
+            format!("level {k}"),
+            upsample::Params {
+                width: size.width,
+                height: size.height,
+                in_width: of.size.width,
+                in_height: of.size.height,
+                scale: (1.0 / self.pyr_scale) as f32,
+            },
+            &[coarse, place_x, place_y],
+            &[(flow, Shape::planar(size, 2))],
+        )
+    }
+
+    /// A given flow as a beginning.
+    fn reduce(&self, k: usize, level: &FlowLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
+        let (size, finest) = (level.level.size, self.levels[0].level.size);
+        Step::new(
+            &area::KERNEL,
+            format!("level {k}"),
+            area::Params {
+                width: size.width,
+                height: size.height,
+                in_width: finest.width,
+                in_height: finest.height,
+                scale: level.level.scale as f32,
+            },
+            &[given, x, y],
+            &[(flow, Shape::planar(size, 2))],
+        )
+    }
+}

@@ -1,0 +1,172 @@
+//! What holds for every estimator: the same bytes every time, numbers at every size, a stream that gives the pair-wise bits, a
+//! certainty that masks, and both executors near each other.
+
+use viewsphere::flow::{Algorithm, Parameters};
+use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
+use viewsphere::kernels::cases::Random;
+use viewsphere::{Backend, Config, Engine};
+
+use crate::need;
+use crate::pair::{Beside, On, flow, flow_with};
+
+const SIZE: Size = Size::new(131, 97);
+const MOTION: [f32; 2] = [1.5, -0.75];
+
+/// A texture that moves by [`MOTION`] from frame to frame.
+fn moving(frame: u8, size: Size) -> Image {
+    let time = f32::from(frame);
+    let value = |i: usize| {
+        let (x, y) = ((i % size.width as usize) as f32, (i / size.width as usize) as f32);
+        let [u, v] = [x - time * MOTION[0], y - time * MOTION[1]];
+        let waves = [[0.31, 0.17], [-0.23, 0.29], [0.11, -0.37], [0.43, 0.05]];
+        let sum: f32 = waves.iter().zip(1..).map(|([a, b], n)| (a * u + b * v + n as f32).sin()).sum();
+        (128.0 + 28.0 * sum).round() as u8
+    };
+    Image { size, format: PixelFormat::Gray8, data: (0..size.pixels()).map(value).collect() }
+}
+
+fn bits(field: &FlowField) -> Vec<[u32; 2]> {
+    field.data.iter().map(|d| d.map(f32::to_bits)).collect()
+}
+
+/// Endpoint errors of the pixels that `counts` takes, sorted.
+fn errors(field: &FlowField, counts: impl Fn(usize, usize) -> bool) -> Vec<f32> {
+    let width = field.size.width as usize;
+    let pixels = field.data.iter().enumerate().filter(|(i, _)| counts(i % width, i / width));
+    let mut errors: Vec<f32> = pixels.map(|(_, [u, v])| (u - MOTION[0]).hypot(v - MOTION[1])).collect();
+    errors.sort_by(f32::total_cmp);
+    errors
+}
+
+fn executors(f: impl Fn(On<'_>)) {
+    f(On::Cpu);
+    if let Some(gpu) = need::gpu_if_any() {
+        f(On::Gpu(&gpu));
+    }
+}
+
+fn finds_a_motion_and_gives_the_same_bytes_twice(algorithm: &Algorithm) {
+    let frames = [0, 1].map(|n| moving(n, SIZE));
+    executors(|on| {
+        let [first, second] = [(); 2].map(|()| flow(on, algorithm.clone(), frames.each_ref(), None));
+        assert!(bits(&first) == bits(&second), "{} on the {}", algorithm.name(), on.name());
+        let errors = errors(&first, |x, y| (20..110).contains(&x) && (20..77).contains(&y));
+        let median = errors[errors.len() / 2];
+        // Whole gray levels leave a few hundredths of a pixel of this texture.
+        assert!(median <= 0.05, "{} on the {}: {median} px", algorithm.name(), on.name());
+    });
+}
+
+fn gives_numbers_at_every_size(algorithm: &Algorithm) {
+    let small = (1..=9).flat_map(|width| (1..=9).map(move |height| Size::new(width, height)));
+    for size in small.chain([(31, 33), (64, 1), (1, 64), (64, 64)].map(|(w, h)| Size::new(w, h))) {
+        let mut random = Random::new(1);
+        let mut noise = || Image {
+            size,
+            format: PixelFormat::Gray8,
+            data: (0..size.pixels()).map(|_| (256.0 * random.next()) as u8).collect(),
+        };
+        let field = flow(On::Cpu, algorithm.clone(), [&noise(), &noise()], None);
+        assert!(field.data.as_flattened().iter().all(|d| d.is_finite()), "{}, {size}", algorithm.name());
+    }
+}
+
+fn a_stream_gives_the_bits_of_pairs(algorithm: &Algorithm) {
+    let frames: Vec<Image> = (0..4).map(|n| moving(n, SIZE)).collect();
+    let backends = [Some(Backend::Cpu), need::gpu_if_any().map(Backend::Gpu)];
+    for backend in backends.into_iter().flatten() {
+        let config = Config { algorithm: algorithm.clone(), ..Config::default() };
+        let mut engine = Engine::new(backend.clone(), SIZE, &config).unwrap();
+        let on = match &backend {
+            Backend::Cpu => On::Cpu,
+            Backend::Gpu(gpu) => On::Gpu(gpu),
+        };
+        for (n, frame) in frames.iter().enumerate() {
+            let output = engine.process(&frame.frame().unwrap()).unwrap();
+            let Some(found) = output.and_then(|output| output.flow) else { continue };
+            let pair = flow(on, algorithm.clone(), [&frames[n - 1], frame], None);
+            assert!(bits(found) == bits(&pair), "{} on the {}, frame {n}", algorithm.name(), on.name());
+        }
+    }
+}
+
+fn a_certainty_masks(algorithm: &Algorithm) {
+    let hidden = |x: usize, y: usize| (50..80).contains(&x) && (35..60).contains(&y);
+    let width = SIZE.width as usize;
+    let share = |i: usize| if hidden(i % width, i / width) { 0.0 } else { 1.0 };
+    let certainty = Plane { size: SIZE, data: (0..SIZE.pixels()).map(share).collect() };
+    let frames = [0, 1].map(|n| {
+        let mut image = moving(n, SIZE);
+        for (i, value) in image.data.iter_mut().enumerate() {
+            if hidden(i % width, i / width) {
+                // A pattern that stays where it is.
+                *value = if (i % width / 3 + i / width / 3).is_multiple_of(2) { 250 } else { 5 };
+            }
+        }
+        image
+    });
+    let near = |x: usize, y: usize| (42..88).contains(&x) && (27..68).contains(&y) && !hidden(x, y);
+    let of = |with: bool| {
+        let certainty = with.then_some([&certainty, &certainty]);
+        let beside = Beside { certainty, ..Beside::default() };
+        let errors = errors(&flow_with(On::Cpu, algorithm.clone(), frames.each_ref(), beside), near);
+        errors.iter().sum::<f32>() / errors.len() as f32
+    };
+    let [without, with] = [of(false), of(true)];
+    println!("{}: {without} px without, {with} px with", algorithm.name());
+    assert!(with < 0.2 && 3.0 * with < without, "{}: {without} and {with} px", algorithm.name());
+}
+
+fn the_confidence_tells_texture_from_none(algorithm: &Algorithm) {
+    let frames = [0, 1].map(|n| {
+        let mut image = moving(n, SIZE);
+        image.data[..SIZE.pixels() / 2].fill(128);
+        image
+    });
+    let config = Config { algorithm: algorithm.clone(), confidence: true, ..Config::default() };
+    let mut engine = Engine::new(Backend::Cpu, SIZE, &config).unwrap();
+    engine.process(&frames[0].frame().unwrap()).unwrap();
+    let output = engine.process(&frames[1].frame().unwrap()).unwrap().unwrap();
+    let plane = output.confidence.unwrap();
+    let at = |x: usize, y: usize| plane.data[y * SIZE.width as usize + x];
+    assert!(at(65, 15) < 0.1 && at(65, 80) > 0.5, "{}: {} and {}", algorithm.name(), at(65, 15), at(65, 80));
+}
+
+fn both_executors_agree(algorithm: &Algorithm) {
+    let Some(gpu) = need::gpu() else { return };
+    let frames = [0, 1].map(|n| moving(n, SIZE));
+    let [cpu, gpu] = [On::Cpu, On::Gpu(&gpu)].map(|on| flow(on, algorithm.clone(), frames.each_ref(), None));
+    let differences = cpu.data.iter().zip(&gpu.data).map(|([a, b], [c, d])| (a - c).hypot(b - d));
+    let largest = differences.fold(0.0, f32::max);
+    // Each kernel is within its bound; where there is texture everywhere, that comes to some 10⁻⁴ px of a pair.
+    assert!(largest <= 5e-3, "{}: {largest} px", algorithm.name());
+}
+
+macro_rules! tests {
+    ($($module:ident: $Type:ident),*) => { $(mod $module {
+        fn algorithm() -> viewsphere::flow::Algorithm {
+            viewsphere::flow::$Type::default().into()
+        }
+        tests!(@each
+            finds_a_motion_and_gives_the_same_bytes_twice gives_numbers_at_every_size a_stream_gives_the_bits_of_pairs
+            a_certainty_masks the_confidence_tells_texture_from_none both_executors_agree
+        );
+    })* };
+    (@each $($test:ident)*) => { $(
+        #[test]
+        fn $test() {
+            super::$test(&algorithm());
+        }
+    )* };
+}
+viewsphere::for_each_estimator!(tests);
+
+#[test]
+fn every_estimator_is_found_by_its_name() {
+    for (name, _) in Algorithm::ALL {
+        assert_eq!(Algorithm::named(name, "default").unwrap().name(), *name);
+        assert!(Algorithm::named(name, "no such preset").is_err());
+    }
+    assert!(Algorithm::named("no such method", "default").is_err());
+    assert_eq!(viewsphere::flow::Farneback::NAME, Algorithm::default().name());
+}
