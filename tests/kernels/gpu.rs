@@ -11,7 +11,7 @@ use viewsphere::gpu::{Finished, Gpu, GpuExecutor, GpuOptions, Tuning, reflect_va
 use viewsphere::kernel::{Kernel, Variant};
 use viewsphere::kernels::{luma, premultiply, window_y};
 
-use crate::need;
+use crate::need::{self, Without};
 
 /// A device of its own: with the pipelines of the shared one nothing can be counted.
 fn open(pipeline_cache: Option<&Path>) -> Option<Gpu> {
@@ -136,7 +136,7 @@ fn constants_that_do_not_fit_the_shader_are_refused() {
     refused(&window_y::KERNEL, &[("WORKGROUP_X", 0.0)], "variant odd");
     refused(&window_y::KERNEL, &[("WORKGROUP_X", -1.0)], "variant odd");
     refused(&window_y::KERNEL, &[("WORKGROUP_X", f64::NAN)], "variant odd");
-    let Some(gpu) = open(None) else { return };
+    let Some(gpu) = need::gpu_if_any().map(|shared| shared.reopen().unwrap()) else { return };
     let variants = &[Variant { name: "odd", constants: &[("WORKGROUP_Z", 1.0)] }];
     let error = run(&gpu, &Kernel { variants, ..window_y::KERNEL }).unwrap_err();
     assert!(error.to_string().contains(unknown), "{error}");
@@ -155,8 +155,9 @@ fn pipelines_are_kept_on_disk_and_a_damaged_file_is_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let cache = folder.path().join("made/when/needed");
     let Some(gpu) = open(Some(&cache)) else { return };
-    if !gpu.features().contains(wgpu::Features::PIPELINE_CACHE) {
-        eprintln!("skipped: {} has no pipeline cache", gpu.adapter());
+    let has = gpu.features().contains(wgpu::Features::PIPELINE_CACHE);
+    let has = if has { Ok(()) } else { Err("the adapter has none") };
+    if need::found("a pipeline cache", has, Without::Nothing).is_none() {
         return;
     }
     assert!(!cache.exists(), "nothing is written before something was compiled");

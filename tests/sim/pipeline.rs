@@ -72,6 +72,7 @@ fn both_executors_say_the_same() {
         config.sphere = Sphere { derotation, ..Sphere::default() };
         config.certainty = derotation == Derotation::Before;
         let [on_gpu, on_cpu] = [Backend::Gpu(gpu.clone()), Backend::Cpu].map(|b| run(b, &small(), &config));
+        assert!(on_cpu[1..].iter().all(|(invalid, ..)| invalid.is_none()), "{derotation:?}");
         for ((invalid, found, heading), (cpu_invalid, expected, cpu_heading)) in on_gpu.iter().zip(&on_cpu) {
             assert_eq!(invalid, cpu_invalid);
             assert!(heading.direction.angle_between(cpu_heading.direction) < 1e-3);

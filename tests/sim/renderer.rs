@@ -330,25 +330,3 @@ fn a_lost_device_is_an_error() {
         assert!(matches!(error, Error::DeviceLost { .. }), "{error}");
     }
 }
-
-/// Of one picture in each world, milliseconds. Run it alone, in a release build.
-#[test]
-#[ignore = "measures"]
-fn speed() {
-    for (name, world, [pose, _]) in worlds() {
-        for backend in backends() {
-            let mut renderer = renderer(&backend, SIZE, &world, &RendererConfig::default());
-            renderer.render(&pose, 0).unwrap();
-            let mut times: Vec<f64> = (0..200)
-                .map(|i| {
-                    let start = std::time::Instant::now();
-                    renderer.render(&pose, i).unwrap();
-                    1e3 * start.elapsed().as_secs_f64()
-                })
-                .collect();
-            let [least, median] = [0.0, 0.5].map(|share| quantile(&mut times, share));
-            let on = if matches!(backend, Backend::Cpu) { "CPU" } else { "GPU" };
-            println!("{name}, {on}: {least:.2} ms at least, {median:.2} in the median");
-        }
-    }
-}
