@@ -156,7 +156,7 @@
 //! | executors | [`gpu`], [`cpu`] | both run any plan |
 //! | kernels | [`kernel`], [`kernels`] | the per-pixel computations, each in WGSL and in Rust |
 //! | files | `io` | images, videos, flow fields, cameras, gyro logs (feature `io`) |
-//! | plain types | [`frame`], [`camera`], [`imu`], [`error`] | frames, cameras and lenses, rotations from a gyro, errors |
+//! | plain types | [`frame`], [`camera`], [`imu`], [`error`] | frames, cameras, rotations from a gyro, errors |
 //!
 //! # Cargo features
 //!
