@@ -20,8 +20,8 @@ pub fn divergence(p: DVec3, nearness_1_m: f64, gradient_1_m: DVec3, v_m_s: DVec3
 /// The flow that takes one unit bearing to another: a unit midpoint m, and the tangent there that has the direction of
 /// their chord and the length of the arc between them, in radians.
 ///
-/// Divided by the time it took, it is the rate at mid-time to second order. For opposite bearings there is no midpoint,
-/// and it is not a number.
+/// Divided by the elapsed time, it is the rate at mid-time to second order. Opposite bearings have no midpoint: the
+/// result is NaN.
 pub fn midpoint_flow(earlier: DVec3, later: DVec3) -> (DVec3, DVec3) {
     let chord = later - earlier;
     let arc = earlier.cross(later).length().atan2(earlier.dot(later));
