@@ -1,4 +1,4 @@
-//! A picture smoothed by `[1 2 1]/4` in both directions, mirrored at the border: the finest level of the pyramid.
+//! Smooths an image by `[1 2 1]/4` in both directions, mirrored at the border: the finest level of the pyramid.
 
 use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
 use super::test_inputs::{Fill, gray_cases};

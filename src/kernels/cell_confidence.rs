@@ -1,7 +1,7 @@
-//! How far the flow of each cell can be trusted: [`confidence`](super::confidence) from samples, cell by cell.
+//! The confidence of each cell's flow: [`confidence`](super::confidence) from samples, cell by cell.
 //!
-//! A cell's samples stand in place of a window's pixels. The equations are made anew at the samples only, a sixteenth of
-//! what the whole plane costs where every fourth pixel of every fourth row is one.
+//! A cell's samples take the place of a window's pixels. The equations are set up again at the samples only: with every
+//! fourth pixel of every fourth row that costs a sixteenth of the whole plane.
 
 use super::confidence::confidence_of;
 use super::expansion_pair::{fours, squared};

@@ -1,5 +1,5 @@
-//! Polynomial expansion, horizontal half: the column moments against the applicability times 1, x and x², and the
-//! least-squares solution `f ≈ xᵀA x + bᵀx + c`, of which A and b are kept.
+//! Polynomial expansion, horizontal half: the column moments are summed with the applicability times 1, x and x², and
+//! give the least-squares solution `f ≈ xᵀA x + bᵀx + c`, of which A and b are kept.
 //!
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
 //! Gaussian applicability of his thesis (2002).

@@ -1,4 +1,4 @@
-//! A picture read bilinearly at the places that a map says, its border replicated.
+//! Samples an image bilinearly at the places of a map; its border is replicated.
 
 use super::lens::clamp_to_frame;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -13,9 +13,9 @@ params! {
         width: u32,
         /// Rows of the result.
         height: u32,
-        /// Pixels in a row of the picture that is read.
+        /// Pixels in a row of the sampled image.
         in_width: u32,
-        /// Rows of the picture that is read.
+        /// Rows of the sampled image.
         in_height: u32,
     }
 }
@@ -51,11 +51,11 @@ fn reference(p: &Params, picture: &[f32], map: &[f32], remapped: &mut [f32]) {
     );
 }
 
-/// Pixels worked on at a time.
+/// Number of pixels per block.
 const BLOCK: usize = 32;
 
-/// Reads the picture at up to [`BLOCK`] places. In three goes over a whole block, so that the compiler makes vectors of
-/// all but the reading itself, which the places keep from being one.
+/// Samples the image at up to [`BLOCK`] places. In three passes over a whole block, so that the compiler vectorizes
+/// everything but the loads, whose addresses depend on the places.
 #[inline(always)]
 fn read(
     out: &mut [f32],
