@@ -139,7 +139,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The bound of the value at an index, whose reference is `expected`. NaN for a value beyond the end of the own
+    /// The bound of the value at an index, whose reference is `expected`. NaN for a value beyond the end of a nonempty own
     /// part.
     pub fn at(&self, index: usize, expected: f32) -> f32 {
         let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
