@@ -6,7 +6,7 @@ use crate::frame::Size;
 use crate::kernel::{Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -27,7 +27,7 @@ kernel!(
 );
 
 impl Params {
-    /// The parameters for a picture of this size.
+    /// The parameters for an image of this size.
     pub fn new(size: Size) -> Self {
         Self { width: size.width, height: size.height }
     }

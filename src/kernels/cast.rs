@@ -12,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and its tiles.
+    /// Shape of the image and its tiles.
     struct Params {
         /// Pixels in a row.
         width: u32,

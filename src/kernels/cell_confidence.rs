@@ -11,7 +11,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the cells and of the picture.
+    /// Shape of the cells and of the image.
     struct Params {
         /// Cells in a row.
         columns: u32,

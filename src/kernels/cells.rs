@@ -12,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the cells and of the picture, and the ideal pinhole that took it.
+    /// Shape of the cells and of the image, and the ideal pinhole that took it.
     struct Params {
         /// Cells in a row.
         columns: u32,
@@ -28,7 +28,7 @@ params! {
         step: u32,
         /// Pixels of a focal length, to the right and down.
         focal: [f32; 2],
-        /// Where the axis meets the picture.
+        /// Where the axis meets the image.
         centre: [f32; 2],
     }
 }

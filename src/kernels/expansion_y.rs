@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the neighbourhood.
+    /// Shape of the image and of the neighbourhood.
     struct Params {
         /// Pixels in a row.
         width: u32,

@@ -18,7 +18,7 @@ params! {
         /// Rows.
         height: u32,
         /// 0: the last two channels are the right-hand sides. 1: they are the square of I_t and the share that both
-        /// pictures show, for the confidence.
+        /// images show, for the confidence.
         residual: u32,
     }
 }

@@ -56,7 +56,7 @@ const MIN_SHARE: f32 = 0.05;
 const LEAST_CERTAINTY: f32 = 1e-6;
 
 impl Params {
-    /// The parameters for a picture of this size and an applicability of this radius.
+    /// The parameters for an image of this size and an applicability of this radius.
     pub fn new(size: Size, radius: u32) -> Self {
         let Size { width, height } = size;
         Self { width, height, radius, min_share: MIN_SHARE, least_certainty: LEAST_CERTAINTY }
@@ -65,10 +65,10 @@ impl Params {
 
 /// Exponents of x and y in the basis 1, x, y, x², y², xy.
 const BASIS: [[usize; 2]; 6] = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
-/// Sums of a pixel: 15 moments of the certainty and 6 of the picture times it.
+/// Sums of a pixel: 15 moments of the certainty and 6 of the image times it.
 const SUMS: usize = 21;
 
-/// The power of x and the channel of each sum: x from 0 to 4 for y⁰, to 3 for y¹ and so on, then those of the picture.
+/// The power of x and the channel of each sum: x from 0 to 4 for y⁰, to 3 for y¹ and so on, then those of the image.
 const fn terms() -> [[usize; 2]; SUMS] {
     let mut terms = [[0; 2]; SUMS];
     let mut n = 0;

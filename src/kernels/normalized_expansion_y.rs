@@ -14,7 +14,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the neighbourhood.
+    /// Shape of the image and of the neighbourhood.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -92,7 +92,7 @@ fn cases(size: Size) -> Vec<Case> {
     })
 }
 
-/// A picture times its certainty, and that certainty, of which a quarter of the picture has none.
+/// An image times its certainty, and that certainty, of which a quarter of the image has none.
 pub(super) fn masked(size: Size, fill: Fill) -> [Vec<f32>; 2] {
     let mut weighted = planes(size, 1, fill, [0.0, 255.0], 3);
     let mut certainty = planes(size, 1, fill, [0.0, 1.0], 4);

@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -67,7 +67,7 @@ fn cases(size: Size) -> Vec<Case> {
         vec![planes(size, 1, fill, [0.0, 65535.0], 7), planes(size, 1, fill, [-0.5, 1.5], 8)]
     });
     for (value, case) in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e38].into_iter().zip(&mut cases) {
-        // The first pixel of the certainty, and the second of the picture where there is one, in every row.
+        // The first pixel of the certainty, and the second of the image where there is one, in every row.
         let stride = size.stride();
         case.inputs[1].iter_mut().step_by(stride).for_each(|c| *c = value);
         case.inputs[0].iter_mut().skip(1).step_by(stride).for_each(|f| *f = value);

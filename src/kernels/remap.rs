@@ -7,7 +7,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the two pictures.
+    /// Shape of the two images.
     struct Params {
         /// Pixels in a row of the result.
         width: u32,
@@ -70,7 +70,7 @@ fn read(
     let (mut first, mut right, mut below) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
     for i in 0..BLOCK {
         (x[i], y[i]) = (clamp_to_frame(x[i], last[0] as f32), clamp_to_frame(y[i], last[1] as f32));
-        // Clamped to the picture, so that nothing is lost.
+        // Clamped to the image, so that nothing is lost.
         let (left, above) = (x[i] as i32 as u32, y[i] as i32 as u32);
         (x[i], y[i]) = (x[i] - left as f32, y[i] - above as f32);
         first[i] = above * stride as u32 + left;

@@ -9,11 +9,11 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures and of the Gaussian.
+    /// Shape of the images and of the Gaussian.
     struct Params {
         /// Pixels in a row of the result.
         width: u32,
-        /// Rows, of both pictures.
+        /// Rows, of both images.
         height: u32,
         /// Pixels in a row of the sampled image.
         in_width: u32,

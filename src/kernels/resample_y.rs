@@ -8,9 +8,9 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures and of the Gaussian.
+    /// Shape of the images and of the Gaussian.
     struct Params {
-        /// Pixels in a row, of both pictures.
+        /// Pixels in a row, of both images.
         width: u32,
         /// Rows of the result.
         height: u32,

@@ -12,13 +12,13 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture, and its weight.
+    /// Shape of the image, and its weight.
     struct Params {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
-        /// Weight of this picture in the sum of those of an exposure.
+        /// Weight of this image in the sum of those of an exposure.
         share: f32,
     }
 }

@@ -25,9 +25,9 @@ params! {
         width: u32,
         /// Rows of the result.
         height: u32,
-        /// Pixels in a row of the raw picture.
+        /// Pixels in a row of the raw image.
         in_width: u32,
-        /// Rows of the raw picture.
+        /// Rows of the raw image.
         in_height: u32,
         /// Focal lengths of the result's pinhole.
         out_focal: [f32; 2],
@@ -82,7 +82,7 @@ impl Params {
         }
     }
 
-    /// The same with a certainty that grows over this many pixels within the raw picture's border.
+    /// The same with a certainty that grows over this many pixels within the raw image's border.
     pub fn with_margin(self, margin_px: f32) -> Self {
         Self { margin: [margin_px; 2], ..self }
     }

@@ -7,7 +7,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures.
+    /// Shape of the images.
     struct Params {
         /// Pixels in a row.
         width: u32,

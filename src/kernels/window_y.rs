@@ -9,7 +9,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the window.
+    /// Shape of the image and of the window.
     struct Params {
         /// Pixels in a row.
         width: u32,

@@ -96,7 +96,7 @@ impl PipelineConfig {
         self.gyro.is_some() && self.max_remaining_rad_s.is_finite()
     }
 
-    /// The pinhole whose pictures the flow is computed of.
+    /// The pinhole whose images the flow is computed of.
     pub(crate) fn ideal(&self, camera: &Camera) -> Result<Camera> {
         match &self.ideal {
             None if camera.lens == Lens::NONE => Ok(*camera),
