@@ -37,7 +37,7 @@ kernel!(
     tolerance: Tolerance {
         absolute: 1e-4,
         relative: 0.0, of_largest: 0.0,
-        reason: "as of confidence: the least eigenvalue is a difference, and keeps four digits where the eigenvalues are \
+        reason: "as in confidence: the least eigenvalue is a difference, and keeps four digits where the eigenvalues are \
                  in a ratio of some hundred, and the share of 1 is taken of its root",
     },
 );
