@@ -139,8 +139,8 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The bound of the value at an index, whose reference is `expected`. NaN for a value beyond the end of a nonempty own
-    /// part.
+    /// The bound of the value at an index, whose reference is `expected`. NaN for a value beyond the end of an own part
+    /// that is not empty.
     pub fn at(&self, index: usize, expected: f32) -> f32 {
         let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
         let own = if self.own.is_empty() { 0.0 } else { self.own.get(index).copied().unwrap_or(f32::NAN) };
