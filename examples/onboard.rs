@@ -1,5 +1,5 @@
-//! What a vehicle does with viewsphere: gyro samples and frames go in, and it acts on the cue. `onboard` needs no file and no
-//! cargo feature: its frames show a flight at 5 m/s towards a wall 6 m ahead, with a gyro that is read at 200 Hz.
+//! A vehicle's loop: it feeds gyro samples and frames to a pipeline and acts on the cues. `onboard` needs no file and
+//! no cargo feature: it computes the frames of a flight at 5 m/s towards a wall 6 m ahead, with a gyro at 200 Hz.
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, Lens, Pose};
@@ -20,7 +20,7 @@ fn main() -> viewsphere::Result<()> {
     let mut samples = (0..).map(|i| gyro(f64::from(i) / GYRO_RATE_HZ)).peekable();
     for number in 0..30 {
         let time_s = f64::from(number) / FRAME_RATE_HZ;
-        // Up to one sample after the frame, so that the turn until then is known.
+        // Up to one sample after the frame, so that the rotation until then is known.
         while let Some(sample) = samples.next_if(|sample| sample.time_s < time_s + 1.0 / GYRO_RATE_HZ) {
             pipeline.push_gyro(sample);
         }
@@ -30,7 +30,7 @@ fn main() -> viewsphere::Result<()> {
     Ok(())
 }
 
-/// A cue that is invalid must not steer: what to do without one is the vehicle's own decision.
+/// Acts on a cue. An invalid cue must not steer; what to do without a cue is the vehicle's decision.
 fn act(cue: &Cue<'_>) {
     let what = match (&cue.invalid, &cue.threat) {
         (Some(reason), _) => format!("hold: {reason}"),
@@ -47,7 +47,7 @@ fn act(cue: &Cue<'_>) {
     println!("{:.3} s  {what}", cue.time_s);
 }
 
-/// The vehicle sways about its axis down while it goes straight on.
+/// The gyro's sample: the vehicle yaws to and fro while it moves straight on.
 fn gyro(time_s: f64) -> GyroSample {
     GyroSample { time_s, gyro_rad_s: DVec3::Y * 0.6 * (8.0 * time_s).cos() }
 }
@@ -57,7 +57,7 @@ fn pose(time_s: f64) -> Pose {
     Pose { position_world: DVec3::Z * SPEED_M_S * time_s, world_from_camera }
 }
 
-/// What the camera sees of a wall with a texture of waves, a byte per pixel.
+/// The camera's image of a wall with a texture of waves, one byte per pixel.
 fn picture(camera: &Camera, pose: &Pose) -> Vec<u8> {
     let gray = |i: u32| {
         let (u, v) = (i % camera.size.width, i / camera.size.width);

@@ -1,4 +1,4 @@
-//! The flow from one picture to another, as a `.flo` file: `pair a.png b.png out.flo`.
+//! The flow from one image to another, as a `.flo` file: `pair a.png b.png out.flo`.
 
 use viewsphere::gpu::{Gpu, GpuOptions};
 use viewsphere::io::{flo, picture};

@@ -1,5 +1,5 @@
-//! From frames, a gyro, attitude and airspeed to bank and climb: what an autopilot asks of viewsphere, in a closed loop. `steer`
-//! needs no file: its aircraft is a point in coordinated turns that flies at 12 m/s to a made-up wall.
+//! From frames, a gyro, attitude and airspeed to bank and climb, in a closed loop: an autopilot's use of viewsphere.
+//! `steer` needs no file: its aircraft, a point mass in coordinated turns, flies at 12 m/s towards a simulated wall.
 
 use viewsphere::camera::FRD_FROM_CAMERA;
 use viewsphere::imu::GyroConfig;
@@ -11,16 +11,16 @@ use viewsphere::sim::{CourseKind, RayTable, reference_render};
 use viewsphere::steer::{Aircraft, Goal, Observation, SteerConfig, Steering, View};
 use viewsphere::{Backend, Pipeline, PipelineConfig};
 
-/// Steps of the gyro, at 240 Hz, from frame to frame.
+/// Steps of the gyro, at 240 Hz, per frame.
 const STEPS: usize = 8;
 
 fn main() -> viewsphere::Result<()> {
-    // The flow and the sectors that flights are flown by; the gyro's axes are the body's: forward, right, down.
+    // The configuration of flow and sectors in simulated flights. The gyro's axes are the body's: forward, right, down.
     let FlightConfig { camera, pipeline, .. } = FlightConfig::default();
     let gyro = GyroConfig { camera_from_gyro: FRD_FROM_CAMERA.transpose(), ..GyroConfig::default() };
     let mut pipeline =
         Pipeline::new(Backend::Cpu, &camera, &PipelineConfig { gyro: Some(gyro), ..pipeline })?;
-    // What is decided acts at once here; an aircraft says how long that takes it.
+    // Here commands act at once; for a real aircraft, set its latency.
     let aircraft = Aircraft { latency_s: 0.0, ..Aircraft::default() };
     let mut steering = Steering::new(SteerConfig { aircraft, ..SteerConfig::default() })?;
 
@@ -52,7 +52,7 @@ fn main() -> viewsphere::Result<()> {
         );
         for step in 1..=STEPS {
             aircraft.advance(&decision.command, STEP_S);
-            // That of the last step is pushed with the next frame.
+            // The sample of the last step is pushed with the next frame.
             if step < STEPS {
                 pipeline.push_gyro(sensor.sample(&aircraft.state()));
             }

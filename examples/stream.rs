@@ -1,6 +1,5 @@
 //! The mean flow of each frame of a sequence: `stream frames/%04d.png`, `stream video.y4m` or `stream a.png b.png …`.
-//!
-//! One frame is computed while the next one is read from the disk.
+//! One frame is computed while the next one is read from disk.
 
 use viewsphere::frame::{FlowField, Image};
 use viewsphere::gpu::{Gpu, GpuOptions};

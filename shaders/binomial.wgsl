@@ -1,4 +1,4 @@
-// A picture smoothed by [1 2 1]/4 in both directions, mirrored at the border.
+// Smooths an image by [1 2 1]/4 in both directions, mirrored at the border.
 
 struct Params {
     width: u32,

@@ -1,4 +1,4 @@
-// What the four samples of each pixel meet first, of the surfaces that its tile can see.
+// Ray casting: the first surface that each of a pixel's four samples hits, of those that its tile can see.
 
 struct Params {
     width: u32,
@@ -7,8 +7,8 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> rays: array<vec4f>;     // x/z, y/z, width; by how much those change a pixel on
-@group(0) @binding(2) var<storage, read> surfaces: array<vec4f>; // up, then six a surface
+@group(0) @binding(1) var<storage, read> rays: array<vec4f>;     // x/z, y/z, width; their change per pixel
+@group(0) @binding(2) var<storage, read> surfaces: array<vec4f>; // up, then six vectors per surface
 @group(0) @binding(3) var<storage, read> tiles: array<vec4f>;    // of members: first box, boxes, first cylinder, cylinders
 @group(0) @binding(4) var<storage, read> members: array<f32>;    // surfaces, nearest first
 @group(0) @binding(5) var<storage, read_write> ids: array<vec4f>;
@@ -32,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < min(u32(tile.y), MAX_MEMBERS); i++) {
         let at = 6u * u32(members[first_box + i]) + 1u;
         let size = surfaces[at + 3u];
-        // All that follow are as far away or further.
+        // All surfaces that follow are as far away or further.
         if all(max(seen.distance, below.distance) < vec4f(size.w)) {
             break;
         }
@@ -110,7 +110,7 @@ fn cuboid(d: Rays, x: vec4f, y: vec4f, z: vec4f, half: vec3f, base: f32, seen: S
     let far_z = -z.w * iz + hz;
     let enter = max(max(near_x, near_y), near_z);
     let leave = min(min(far_x, far_y), far_z);
-    // From the inside the face behind is seen.
+    // From the inside, the face behind is visible.
     let outside = enter > vec4f();
     let distance = select(leave, enter, outside);
     let hit = (enter <= leave) & (leave > vec4f()) & (distance < seen.distance);
@@ -119,7 +119,7 @@ fn cuboid(d: Rays, x: vec4f, y: vec4f, z: vec4f, half: vec3f, base: f32, seen: S
     let l = select(select(lz, ly, on_y), lx, on_x);
     let axis = select(select(vec4f(4.0), vec4f(2.0), on_y), vec4f(), on_x);
     let side = select(vec4f(), vec4f(1.0), (l > vec4f()) != outside);
-    // What has no height has one face.
+    // A surface without height has one face.
     let face = select(axis + side, vec4f(), vec4<bool>(half.z == 0.0));
     return Samples(select(seen.distance, distance, hit), select(seen.id, base + face + 1.0, hit));
 }

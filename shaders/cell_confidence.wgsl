@@ -1,12 +1,12 @@
-// How far the flow of each cell can be trusted, from samples of the two frames' expansions.
+// The confidence of each cell's flow, from samples of the two frames' expansions.
 
 struct Params {
     columns: u32,
     rows: u32,
     width: u32,
     height: u32,
-    cell: u32, // pixels of a cell's side
-    step: u32, // pixels from one sample to the next
+    cell: u32, // side of a cell, pixels
+    step: u32, // distance of samples, pixels
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

@@ -1,12 +1,12 @@
-// The mean of a plane over each cell's samples, each times its certainty.
+// The mean of a plane over each cell's samples, weighted by their certainty.
 
 struct Params {
     columns: u32,
     rows: u32,
     width: u32,
     height: u32,
-    cell: u32, // pixels of a cell's side
-    step: u32, // pixels from one sample to the next
+    cell: u32, // side of a cell, pixels
+    step: u32, // distance of samples, pixels
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

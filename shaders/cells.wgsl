@@ -5,14 +5,14 @@ struct Params {
     rows: u32,
     width: u32,
     height: u32,
-    cell: u32, // pixels of a cell's side
-    step: u32, // pixels from one sample to the next
+    cell: u32, // side of a cell, pixels
+    step: u32, // distance of samples, pixels
     focal: vec2f,
     centre: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> flow: array<f32>;      // from the current frame back to the one before, pixels
+@group(0) @binding(1) var<storage, read> flow: array<f32>;      // from the current frame back to the previous one, pixels
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>;
 @group(0) @binding(3) var<storage, read> certainty: array<f32>; // of the current frame's pixels
 @group(0) @binding(4) var<storage, read> confidence: array<f32>;     // of the cells
@@ -44,7 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let previous = turned_back(unturned);
             let seen = midpoint_flow(current, previous, -shift - (previous - unturned));
             let m = seen.midpoint;
-            // What lies beside or behind the camera has no place in the pinhole's plane.
+            // Directions beside or behind the camera have no place in the pinhole's plane.
             let w = select(0.0, certainty[at.y * stride + at.x], known && m.z > 0.01);
             let z = max(m.z, 0.01);
             weight += w;

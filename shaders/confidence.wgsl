@@ -1,5 +1,5 @@
-// How far the flow can be trusted: rows of the averaged evidence averaged in turn, and 1 against the standard error that
-// they predict.
+// The confidence of each pixel's flow: rows of the evidence, already averaged along columns, are averaged, and their
+// predicted standard error is mapped to 0 to 1.
 
 struct Params {
     width: u32,
@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> columns: array<vec4f>; // channels: G_xx, G_xy, G_yy, ‖Δb‖², coverage
-@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>;  // as of solve
+@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>;  // as in solve
 @group(0) @binding(3) var<storage, read_write> confidence: array<vec4f>;
 
 const SPAN = vec2u(16u, 1u);

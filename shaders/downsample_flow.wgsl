@@ -1,5 +1,5 @@
-// A given flow reduced to a coarser level: the mean over each coarse pixel's area, scaled to the level's pixel size.
-// A displacement that is not finite or over 10⁹ is unknown and counts as none.
+// Reduces a given flow to a coarser level: the mean over each coarse pixel's area, scaled to the level's pixel size.
+// A displacement that is not finite or over 10⁹ is unknown and counts as zero.
 
 struct Params {
     width: u32,

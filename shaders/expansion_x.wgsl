@@ -1,4 +1,4 @@
-// Polynomial expansion, horizontal half: the column moments against g times 1, x and x², and the least-squares
+// Polynomial expansion, horizontal half: the column moments summed with g times 1, x and x², and the least-squares
 // solution f ≈ xᵀA x + bᵀx + c, of which A and b are kept.
 // Farnebäck 2003, section 2, with the separable Gaussian applicability of his thesis.
 
@@ -14,11 +14,11 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> moments: array<vec4f>;
-@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a whole four, then as of expansion_y
-@group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // a pixel each: b_x, b_y, A_xx, A_yy
+@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a multiple of four, then as in expansion_y
+@group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // per pixel: b_x, b_y, A_xx, A_yy
 @group(0) @binding(4) var<storage, read_write> cross_term: array<vec4f>; // a plane: 2 A_xy
 
-// Eight columns at a time: the windows slide in registers, four new columns a step.
+// Eight columns at a time: the windows slide in registers, four new columns per step.
 const SPAN = vec2u(8u, 1u);
 const MAX_STEPS = 18u;
 
@@ -54,7 +54,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     store(four + 1u, id.y, right);
 }
 
-// Of four neighbouring pixels each.
+// Values of four neighbouring pixels.
 struct Moments {
     m_1: vec4f,
     m_x: vec4f,
@@ -78,7 +78,7 @@ fn add(
     );
 }
 
-// Four columns; past the ends of the row the end's value.
+// Four columns; beyond the ends of the row the end's value.
 fn column(row: u32, four: i32) -> vec4f {
     let last = i32((params.width + 3u) / 4u) - 1;
     return repeat_ends(moments[row + u32(clamp(four, 0, last))], four, last);

@@ -1,4 +1,4 @@
-// Polynomial expansion, vertical half: a picture's columns against the applicability g times 1, y and y².
+// Polynomial expansion, vertical half: an image's columns summed with the applicability g times 1, y and y².
 // Farnebäck 2003, section 2, with the separable Gaussian applicability of his thesis.
 
 struct Params {
@@ -12,7 +12,7 @@ struct Params {
 @group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>; // four samples each of g, y g, y² g, then the next
 @group(0) @binding(3) var<storage, read_write> moments: array<vec4f>; // channels: Σ g f, Σ y g f, Σ y² g f
 
-// Four rows at a time: the window of rows slides in registers, four new rows a step.
+// Four rows at a time: the window of rows slides in registers, four new rows per step.
 const SPAN = vec2u(4u, 4u);
 const MAX_STEPS = 17u;
 

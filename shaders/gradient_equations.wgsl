@@ -4,7 +4,7 @@
 struct Params {
     width: u32,
     height: u32,
-    residual: u32, // 0 for the right-hand sides, 1 for the square of I_t and the share that is shown
+    residual: u32, // 0 for the right-hand sides, 1 for the square of I_t and the visible share
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -36,7 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let t = share * i_t;
     let squares = vec3f(g.x * g.x, g.x * g.y, g.y * g.y);
     let rest = select(vec2f(-g.x * t, -g.y * t), vec2f(t * t, share), params.residual == 1u);
-    // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+    // Overflow and NaN become zeros, so that they do not spread.
     let known = dot(abs(squares), vec3f(1.0)) + dot(abs(rest), vec2f(1.0)) <= 1e30;
     if id.x < stride && id.y < params.height {
         let at = 5u * id.y * stride + id.x;

@@ -1,13 +1,13 @@
-// How fast each cell's surroundings come nearer: nearness rate and divergence on the view sphere.
+// Looming of each cell: the nearness rate and the divergence of the flow on the view sphere.
 
 struct Params {
     columns: u32,
     rows: u32,
-    radius: u32,       // of the window of the divergence, cells
-    inner: u32,        // of the window of the nearness rate, cells
-    pitch: vec2f,      // from one cell to the next, in the pinhole's plane
+    radius: u32,       // radius of the divergence's window, cells
+    inner: u32,        // radius of the nearness rate's window, cells
+    pitch: vec2f,      // distance of cells in the pinhole's plane
     origin: vec2f,     // the first cell's centre there
-    noise: f32,        // of a trusted cell's rate, a frame, in the pinhole's plane
+    noise: f32,        // standard error of a cell's rate, per frame, in the pinhole's plane
     least_confidence: f32,
 }
 
@@ -88,13 +88,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let here = rate - mean.x * by_x - mean.y * by_y;
     let divergence = by_x.x + by_y.y - 3.0 * dot(origin, here) / (1.0 + dot(origin, origin));
 
-    // What the affine motion leaves is the noise of the rates, and edges in depth.
+    // The residual of the affine motion is the noise of the rates, and edges in depth.
     let left = square * share - dot(rate, rate) - dot(by_x, c_x) - dot(by_y, c_y);
     let variance = params.noise * params.noise + 0.5 * max(left, 0.0);
-    // From the flow's length against its distance from the direction of motion: good far from it.
+    // From the flow's length relative to its distance from the direction of motion: accurate far from it.
     let far = inner_rate / max(inner_square, 1e-20);
     let far_noise = variance / max(inner_square, 1e-20);
-    // From its growth within the window: good near it, where the surface's slant does not matter.
+    // From its growth within the window: accurate near it, where the surface's slant does not matter.
     let growth_square = max(ideal_square - sum * dot(ideal, ideal), 1e-20);
     let growth = (ideal_rate - sum * dot(ideal, rate)) / growth_square;
     let growth_noise = variance / growth_square;

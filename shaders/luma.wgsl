@@ -25,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let gray8 = params.format == 0u;
     let word = frame[id.y * params.row_words + min(id.x, stride - 1u)];
     var four = repeat_last(vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu)), x0, params.width);
-    // A loop and no branch: where shaders run on the CPU, both sides of a branch are gone through.
+    // A loop and no branch: where shaders run on the CPU, both sides of a branch are executed.
     for (var i = 0u; i < min(select(PIXELS, 0u, gray8), PIXELS); i++) {
         four = select(four, vec4f(pixel(min(x0 + i, last), id.y)), vec4u(0u, 1u, 2u, 3u) == vec4u(i));
     }

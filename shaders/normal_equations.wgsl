@@ -1,11 +1,11 @@
-// Each pixel's normal equations for its displacement, with the second frame read where the flow so far points.
+// Each pixel's normal equations for its displacement, with the second frame sampled where the flow so far points.
 // Farnebäck 2003, section 3.
 
 struct Params {
     width: u32,
     height: u32,
-    carried: f32, // of the flow so far, in the equations: all of it, or none
-    outside: f32, // how much counts what has run out of the second frame: as the rest, or nothing
+    carried: f32, // share of the flow so far in the equations: 1 or 0
+    outside: f32, // weight of a place outside the second frame: 1 or 0
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -59,7 +59,7 @@ fn pixel(x: u32, y: u32, cross_term: f32, d: vec2f) -> Equations {
     let b = weight * m.delta_b;
     let g = squared(a);
     let h = vec2f(a.x * b.x + a.y * b.y, a.y * b.x + a.z * b.y);
-    // Equations that overflowed or were never numbers say nothing; zeros keep that from spreading.
+    // Overflow and NaN become zeros, so that they do not spread.
     let known = dot(abs(g), vec3f(1.0)) + dot(abs(h), vec2f(1.0)) <= 1e30;
     return Equations(select(vec3f(), g, known), select(vec2f(), h, known));
 }

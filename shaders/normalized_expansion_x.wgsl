@@ -1,19 +1,19 @@
-// Polynomial expansion by normalised convolution, horizontal half: the moments of the certainty c against the
-// applicability g, and the least-squares solution f ≈ xᵀA x + bᵀx + c, of which A and b are kept.
-// Farnebäck 2003, section 2, with the separable Gaussian applicability of his thesis.
+// Polynomial expansion by normalised convolution, horizontal half: the moments of the certainty c with the
+// applicability g, and the least-squares solution f ≈ xᵀA x + bᵀx + c, of which A and b are kept. Farnebäck 2003,
+// section 2, with the separable Gaussian applicability of his thesis.
 
 struct Params {
     width: u32,
     height: u32,
     radius: u32,
-    min_share: f32,       // of a term that must be its own for the neighbourhood to determine it
+    min_share: f32,       // the share of a term that the terms before it must leave unexplained
     least_certainty: f32, // of the whole neighbourhood
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> moments: array<vec4f>;          // channels: Σ yᵏ g c for k to 4, Σ yᵏ g c f to 2
-@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a whole four, then as of expansion_y
-@group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // a pixel each: b_x, b_y, A_xx, A_yy
+@group(0) @binding(2) var<uniform> applicability: array<vec4f, 1024>;    // zeros up to a multiple of four, then as in expansion_y
+@group(0) @binding(3) var<storage, read_write> quad: array<vec4f>;       // per pixel: b_x, b_y, A_xx, A_yy
 @group(0) @binding(4) var<storage, read_write> cross_term: array<vec4f>; // a plane: 2 A_xy
 @group(0) @binding(5) var<storage, read_write> expansion_certainty: array<vec4f>;
 
@@ -70,7 +70,7 @@ struct Columns {
     b: vec4f,
 }
 
-// Four columns of a channel and the next four; past the ends of the row the end's value.
+// Four columns of a channel and the next four; beyond the ends of the row the end's value.
 fn columns(y: u32, channel: u32, four: i32) -> Columns {
     let stride = (params.width + 3u) / 4u;
     let row = (8u * y + channel) * stride;

@@ -1,6 +1,6 @@
-// Polynomial expansion by normalised convolution, vertical half: the columns of a picture's certainty c, and of the
-// picture f times its certainty, against the applicability g times powers of y.
-// Farnebäck 2003, section 2, with the separable Gaussian applicability of his thesis.
+// Polynomial expansion by normalised convolution, vertical half: the columns of an image's certainty c, and of the
+// image f times its certainty, are summed with the applicability g times powers of y. Farnebäck 2003, section 2, with
+// the separable Gaussian applicability of his thesis.
 
 struct Params {
     width: u32,

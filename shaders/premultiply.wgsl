@@ -1,5 +1,5 @@
-// A picture times the certainty of its pixels, and that certainty clamped to its range.
-// Knutsson and Westin 1993, normalised averaging: both are smoothed alike, and what is unknown adds nothing to either.
+// Multiplies an image by the certainty of its pixels, and clamps that certainty to its range.
+// Knutsson and Westin 1993, normalised averaging: both are smoothed alike, and unknown pixels add nothing to either.
 
 struct Params {
     width: u32,
@@ -21,7 +21,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let x0 = id.x * SPAN.x;
     let f = gray[at];
     let c = certainty[at];
-    // What is not a number compares as false with everything, so it is not known.
+    // NaN compares as false with everything, so it is unknown.
     let known = (c > vec4f()) & (abs(f) <= vec4f(1e30));
     let clamped = select(vec4f(), min(c, vec4f(1.0)), known);
     let weighted = select(vec4f(), clamped * f, known);

@@ -1,4 +1,4 @@
-// A picture read bilinearly at the places that a map says, its border replicated.
+// Samples an image bilinearly at the places of a map; its border is replicated.
 
 struct Params {
     width: u32,

@@ -1,4 +1,5 @@
-// Rows of a picture smoothed by a Gaussian and read at fractional columns: the horizontal half of one pyramid step.
+// Smooths the rows of an image by a Gaussian and samples them at fractional columns: the horizontal half of one pyramid
+// step.
 
 struct Params {
     width: u32,     // of the result
@@ -27,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let first = i32(at.x) - i32(params.taps / 2u);
     var sum = 0.0;
     var before = 0.0;
-    // Reading between two smoothed columns is one sum over taps + 1 columns, with the two columns' weights mixed.
+    // Sampling between two smoothed columns is one sum over taps + 1 columns, with the two columns' weights mixed.
     for (var k = 0u; k < min((params.taps + 4u) / 4u, MAX_STEPS); k++) {
         let w = gauss[k];
         let weights = mix(w, vec4f(before, w.xyz), at.y);

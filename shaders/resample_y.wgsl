@@ -1,4 +1,5 @@
-// Columns of a picture smoothed by a Gaussian and read at fractional rows: the vertical half of one pyramid step.
+// Smooths the columns of an image by a Gaussian and samples them at fractional rows: the vertical half of one pyramid
+// step.
 
 struct Params {
     width: u32,
@@ -26,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let first = i32(at.x) - i32(params.taps / 2u);
     var sum = vec4f();
     var before = 0.0;
-    // Reading between two smoothed rows is one sum over taps + 1 rows, with the two rows' weights mixed.
+    // Sampling between two smoothed rows is one sum over taps + 1 rows, with the two rows' weights mixed.
     for (var k = 0u; k < min((params.taps + 4u) / 4u, MAX_STEPS); k++) {
         let w = gauss[k];
         let weights = mix(w, vec4f(before, w.xyz), at.y);

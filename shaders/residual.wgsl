@@ -1,4 +1,4 @@
-// How well the two frames' expansions agree under the flow that was found, pixel by pixel.
+// The residual of each pixel: how well the two frames' expansions agree under the estimated flow.
 
 struct Params {
     width: u32,
@@ -24,7 +24,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = y * stride + x;
     let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
     let second = second_at(vec2f(f32(x), f32(y)) + d);
-    // With the flow taken out, what is left of Δb is what the flow does not explain.
+    // The residual of Δb is the part that the flow does not explain.
     let m = model(Expansion(quad_0[i], cross_term_0[i]), second, vec2f());
     let share = select(0.0, certainty[i], second.inside);
     let weight = share * border_weight(x, params.width) * border_weight(y, params.height);

@@ -1,4 +1,4 @@
-// The flow that the camera's turn alone makes, as a beginning for the search.
+// The flow that the camera's rotation alone causes, as an initial flow for the search.
 
 struct Params {
     width: u32,
@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> motion: array<vec4f>;
-@group(0) @binding(2) var<storage, read_write> flow: array<f32>; // from the current frame back to the one before, pixels
+@group(0) @binding(2) var<storage, read_write> flow: array<f32>; // from the current frame back to the previous one, pixels
 
 const SPAN = vec2u(1u, 1u);
 

@@ -1,4 +1,4 @@
-// What the cells of each sector of the view say together.
+// The summary of the cells in each sector of the view.
 
 struct Params {
     columns: u32,
@@ -13,12 +13,13 @@ struct Params {
 @group(0) @binding(2) var<storage, read> looming: array<f32>; // channels: N, div, standard error of N, confidence
 @group(0) @binding(3) var<storage, read> ranges: array<vec2f>; // of members: first and count, sector by sector
 @group(0) @binding(4) var<storage, read> members: array<f32>; // cells, by their number
-// Channels: coverage, N low, median and high, div, confidence, F (3), Σw n nᵀ (xx, xy, xz, yy, yz, zz), standard error of N.
+// Channels: coverage, N low, median and high, div, confidence, F (3), Σw n nᵀ (xx, xy, xz, yy, yz, zz), standard error
+// of N.
 @group(0) @binding(5) var<storage, read_write> sectors: array<f32>;
 
 const SPAN = vec2u(1u, 1u);
 const MAX_MEMBERS = 65536u;
-const FEW = 24u; // members whose ranks are found by comparing each with each
+const FEW = 24u; // up to so many members, ranks are found by comparing each with each
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -76,11 +77,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
-// Of the known members the keys of N at three ranks and of what diverges at the last one.
+// Of the known members, the keys of N at three ranks, and of the divergence at the last one.
 fn select_ranks(first: u32, count: u32, ranks: vec4u) -> vec4u {
     var found = vec4u();
     if count <= FEW {
-        // Each one's rank is how many are smaller, or equal and before it.
+        // A member's rank is the number of members that are smaller, or equal and before it.
         for (var k = 0u; k < min(count, FEW); k++) {
             let one = keys_of(first + k);
             var below = vec4u();
@@ -93,7 +94,7 @@ fn select_ranks(first: u32, count: u32, ranks: vec4u) -> vec4u {
         }
         return found;
     }
-    // From the highest bit to the lowest by counting what is smaller.
+    // From the highest bit to the lowest, by counting smaller members.
     for (var bit = 0u; bit < 32u; bit++) {
         let guess = found | vec4u(0x80000000u >> bit);
         var below = vec4u();
@@ -107,7 +108,7 @@ fn select_ranks(first: u32, count: u32, ranks: vec4u) -> vec4u {
 }
 
 struct Keys {
-    keys: vec4u, // N thrice, and what diverges
+    keys: vec4u, // N three times, and the divergence
     known: bool,
 }
 
@@ -118,7 +119,7 @@ fn keys_of(member: u32) -> Keys {
     return Keys(vec4u(n, n, n, key(max(looming[at.y + at.z], 0.0))), known);
 }
 
-// Where a cell stands in cells and in looming, and how far apart the channels are there.
+// The indices of a cell in cells and in looming, and the distance of the channels there.
 fn place(cell: u32) -> vec3u {
     let stride = (params.cell_columns + 3u) / 4u * 4u;
     let row = cell / params.cell_columns;
@@ -126,9 +127,9 @@ fn place(cell: u32) -> vec3u {
     return vec3u(5u * row * stride + column, 4u * row * stride + column, stride);
 }
 
-// Bits that are in order where the numbers are.
+// Bits whose order is that of the numbers.
 fn key(v: f32) -> u32 {
-    // Both zeros are one number.
+    // Both zeros are the same number.
     let bits = bitcast<u32>(v + 0.0);
     return select(bits | 0x80000000u, ~bits, bits >= 0x80000000u);
 }

@@ -1,4 +1,4 @@
-// What a sensor makes of gray levels: noise, and whole numbers from 0 to 255.
+// The camera sensor: adds noise to gray levels and rounds them to whole numbers from 0 to 255.
 
 struct Params {
     width: u32,

@@ -1,4 +1,4 @@
-// The gray level of each pixel, and how near it is, of what its samples meet.
+// Shading: the gray level and the nearness of each pixel, from the surfaces that its samples hit.
 
 struct Params {
     width: u32,
@@ -7,8 +7,8 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> rays: array<vec4f>;     // x/z, y/z, width; by how much those change a pixel on
-@group(0) @binding(2) var<storage, read> surfaces: array<vec4f>; // up, then six a surface
+@group(0) @binding(1) var<storage, read> rays: array<vec4f>;     // x/z, y/z, width; their change per pixel
+@group(0) @binding(2) var<storage, read> surfaces: array<vec4f>; // up, then six vectors per surface
 @group(0) @binding(3) var<storage, read> ids: array<vec4f>;      // of the four samples
 @group(0) @binding(4) var<storage, read> before: array<f32>;     // the sum so far
 @group(0) @binding(5) var<storage, read_write> gray: array<f32>;
@@ -34,11 +34,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let centre = normalize(vec3f(ray.xy, 1.0));
     var left = vec4f(1.0);
     var sum = 0.0;
-    // One over the distance at the centre, of what the centre meets and of all that the samples meet.
+    // The inverse distance at the centre, of the face that the centre hits and of all faces that the samples hit.
     var met = 0.0;
     var any_met = 0.0;
     var sky = false;
-    // One round for each thing that is seen.
+    // One iteration for each face that is seen.
     for (var i = 0u; i < 4u; i++) {
         if !(dot(left, vec4f(1.0)) > 0.0) {
             break;
@@ -61,7 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         level = clamp(select(level, of_surface, one > 0.0), 0.0, 255.0);
         sum += 0.25 * share * level;
     }
-    // What lies between the samples is taken for what they meet.
+    // The area between the samples is assumed to show what they hit.
     let near = select(any_met, met, met > 0.0 || sky);
     if id.x < stride && id.y < params.height {
         let shown = ray.z > 0.0;

@@ -1,4 +1,4 @@
-// Rows of the five channels averaged by a symmetric window, and the displacement that solves the averaged equations.
+// Averages rows of the five channels by a symmetric window, and solves the averaged equations for the displacement.
 // Farnebäck 2003, section 3; the determinant is kept off zero by 10⁻³.
 
 struct Params {
@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> columns: array<vec4f>;
-@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // zeros up to a whole four, weights, then zeros
+@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // zeros up to a multiple of four, weights, then zeros
 @group(0) @binding(3) var<storage, read_write> flow: array<vec4f>;
 
 const SPAN = vec2u(16u, 1u);

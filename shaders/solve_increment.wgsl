@@ -1,4 +1,4 @@
-// As solve.wgsl, with the displacement that solves the averaged equations added to the flow so far.
+// As solve.wgsl, with the solution added to the flow so far.
 // Farnebäck 2003, section 3; the determinant is kept off zero by 10⁻³.
 
 struct Params {
@@ -9,7 +9,7 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> columns: array<vec4f>;
-@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // zeros up to a whole four, weights, then zeros
+@group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // zeros up to a multiple of four, weights, then zeros
 @group(0) @binding(3) var<storage, read> so_far: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> flow: array<vec4f>;
 

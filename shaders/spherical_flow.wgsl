@@ -1,4 +1,4 @@
-// Flow on the view sphere: how far each pixel's bearing moved since the frame before, the camera's turn taken out.
+// Flow on the view sphere: the derotated motion of each pixel's bearing since the previous frame.
 
 struct Params {
     width: u32,
@@ -8,9 +8,9 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> flow: array<f32>;    // from the current frame back to the one before, pixels
+@group(0) @binding(1) var<storage, read> flow: array<f32>;    // from the current frame back to the previous one, pixels
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>;
-@group(0) @binding(3) var<storage, read_write> spherical_flow: array<f32>; // 3 channels, radians a frame
+@group(0) @binding(3) var<storage, read_write> spherical_flow: array<f32>; // 3 channels, radians per frame
 
 const SPAN = vec2u(1u, 1u);
 

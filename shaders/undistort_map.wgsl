@@ -1,4 +1,4 @@
-// Where each pixel of an ideal, turned picture lies in the raw one, and how far what is there is to be trusted.
+// The map of undistortion: the place of each pixel of an ideal, rotated image in the raw one, and the certainty there.
 
 struct Params {
     width: u32,
@@ -38,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let place = near(params.raw_focal * distort(seen.place, params.lens_a, params.lens_b) + params.raw_centre);
     let last = vec2f(f32(params.in_width - 1u), f32(params.in_height - 1u));
     let clamped = clamp_to_frame(place, last);
-    // From nothing a pixel outside to all a margin within.
+    // From 0 one pixel outside to 1 a margin inside.
     let within = min(place, last - place);
     let covered = clamp((within + 1.0) / (params.margin + 1.0), vec2f(), vec2f(1.0));
     map[2u * id.y * stride + id.x] = clamped.x;
@@ -48,11 +48,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 struct Ideal {
     place: vec2f,
-    share: f32, // 0 where nothing is seen
+    share: f32, // visibility, 0 to 1
 }
 
-// Where an ideal pinhole shows a ray. One that the lens does not show is put on the circle where that begins, so that
-// rounding does not make it jump.
+// The place at which an ideal pinhole shows a ray. One that the lens does not show is put on the circle where that
+// begins, so that rounding does not make it jump.
 fn ideal(ray: vec3f) -> Ideal {
     let across = dot(ray.xy, ray.xy);
     if ray.z > 0.0 && across < params.limit.x * ray.z * ray.z {
@@ -64,7 +64,7 @@ fn ideal(ray: vec3f) -> Ideal {
     return Ideal(select(vec2f(), ray.xy * scale, known), 0.0);
 }
 
-// A place more than a pixel outside the frame, drawn to its middle until it is that near.
+// A place more than a pixel outside the frame is moved towards its centre until it is one pixel outside.
 fn near(place: vec2f) -> vec2f {
     let d = place - params.middle;
     let times = abs(d) / (params.middle + 1.0);
@@ -72,7 +72,7 @@ fn near(place: vec2f) -> vec2f {
     return select(place, params.middle + d / max(most, 1.0), most > 1.0);
 }
 
-// The mask between pixels.
+// The mask, sampled bilinearly.
 fn mask_at(place: vec2f) -> f32 {
     let at = between(place);
     return mix(
@@ -82,7 +82,7 @@ fn mask_at(place: vec2f) -> f32 {
     );
 }
 
-// A value clamped to the range 0 to 1. What is not a number is not trusted.
+// A value clamped to the range 0 to 1. NaN becomes 0.
 fn share(value: f32) -> f32 {
     return select(0.0, min(value, 1.0), value > 0.0);
 }

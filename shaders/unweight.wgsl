@@ -1,4 +1,4 @@
-// A picture that was smoothed together with its certainty, divided by it: the smoothed picture of what is known.
+// Divides an image that was smoothed together with its certainty by it: the smoothed image of the known pixels.
 
 struct Params {
     width: u32,

@@ -1,4 +1,4 @@
-// A coarser level's flow read bilinearly at this level's pixels and scaled to its pixel size.
+// Samples a coarser level's flow bilinearly at this level's pixels and scales it to their size.
 
 struct Params {
     width: u32,
@@ -51,7 +51,7 @@ fn columns(four: u32, y: vec2f, channel: u32) -> vec4f {
     return mix(coarse[(2u * above + channel) * stride + x4], coarse[(2u * below + channel) * stride + x4], y.y);
 }
 
-// Of eight columns those with the given numbers.
+// The columns with the given numbers, of eight.
 fn pick(here: vec4f, next: vec4f, number: vec4u) -> vec4f {
     return select(of_four(here, number), of_four(next, number - 4u), number >= vec4u(4u));
 }

@@ -1,4 +1,4 @@
-// The second picture read where the flow so far points, and how far each place is shown.
+// Samples the second image where the flow so far points, and the visibility of each place.
 
 struct Params {
     width: u32,
@@ -21,7 +21,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let y = min(id.y, params.height - 1u);
     let place = vec2f(f32(x), f32(y)) + vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
     let last = vec2f(f32(params.width - 1u), f32(params.height - 1u));
-    // A place that is not a number is not inside either.
+    // NaN is not inside either.
     let inside = all(place >= vec2f()) && all(place <= last);
     let at = select(vec2f(), place, inside);
     let whole = floor(at);

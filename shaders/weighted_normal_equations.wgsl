@@ -1,12 +1,12 @@
-// Each pixel's normal equations for its displacement, as in normal_equations.wgsl, weighted by how certain both frames'
-// expansions are: by that of the first frame's pixel times that of the place in the second frame.
+// Each pixel's normal equations for its displacement, as in normal_equations.wgsl, weighted by the certainty of both
+// frames' expansions: that of the first frame's pixel times that of the place in the second frame.
 // Farnebäck 2003, section 3.
 
 struct Params {
     width: u32,
     height: u32,
-    carried: f32, // of the flow so far, in the equations: all of it, or none
-    outside: f32, // how much counts what has run out of the second frame: as the rest, or nothing
+    carried: f32, // share of the flow so far in the equations: 1 or 0
+    outside: f32, // weight of a place outside the second frame: 1 or 0
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -55,11 +55,11 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
     let stride = (params.width + 3u) / 4u * 4u;
     let place = vec2f(f32(x), f32(y)) + d;
     let whole = floor(place);
-    // A place that is not a number is not inside either.
+    // NaN is not inside either.
     let inside = all(whole >= vec2f()) && all(whole < vec2f(f32(params.width), f32(params.height)) - 1.0);
     let at = vec2u(select(vec2f(), whole, inside));
     let i = at.y * stride + at.x;
-    // One past the end only where a picture is one pixel wide or high, and then nothing is inside.
+    // One past the end only where an image is one pixel wide or high, and then no place is inside.
     let right = select(0u, 1u, inside);
     let below = select(0u, stride, inside);
     let f = place - whole;
@@ -75,20 +75,19 @@ fn pixel(x: u32, y: u32, cross_term: f32, certainty: f32, d: vec2f) -> Equations
     let m = model(Expansion(quad_0[y * stride + x], cross_term), Second(second, inside), params.carried * d);
     let counts = select(params.outside, 1.0, inside);
     let border = counts * border_weight(x, params.width) * border_weight(y, params.height);
-    // What lies outside counts as certain as the pixel, or halving all certainty would double the outside's say.
+    // A place outside counts with the pixel's certainty; otherwise halving all certainty would double its weight.
     let weight = certainty * select(certainty, sum, inside);
     let w = border * m.a;
     let z = border * m.delta_b;
     let g = weight * squared(w);
     let h = weight * vec2f(w.x * z.x + w.y * z.y, w.y * z.x + w.z * z.y);
-    // Equations of which nothing is certain, that overflowed or were never numbers say nothing; zeros keep that from
-    // spreading.
+    // Equations without certainty, overflow and NaN become zeros, so that they do not spread.
     let known = weight > 1e-6 && dot(abs(g), vec3f(1.0)) + dot(abs(h), vec2f(1.0)) <= 1e30;
     return Equations(select(vec3f(), g, known), select(vec2f(), h, known));
 }
 
-// One of the four pixels around a place, times its weight and its certainty: a mean so weighted is drawn to nothing by
-// those that have no expansion.
+// One of the four pixels around a place, times its weight and its certainty, so that pixels without an expansion do
+// not draw the mean towards zero.
 struct Weighted {
     quad: vec4f,
     cross_term: f32,

@@ -1,8 +1,8 @@
-//! What a plan is computed on.
+//! The device that computes a plan.
 
 use crate::gpu::Gpu;
 
-/// What a plan is computed on.
+/// The device that computes a plan.
 #[derive(Clone)]
 pub enum Backend {
     /// A GPU.
@@ -12,8 +12,8 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// The adapter's name, or `cpu`: unlike [`Engine::adapter`](crate::Engine::adapter) the same for any number of cores,
-    /// which do not change the results.
+    /// The adapter's name, or `cpu`. Unlike [`Engine::adapter`](crate::Engine::adapter) it does not name the number of
+    /// threads, which does not change the results.
     pub fn name(&self) -> String {
         match self {
             Self::Gpu(gpu) => gpu.adapter().to_string(),

@@ -1,14 +1,14 @@
-//! What can go wrong. Every message is one line that names the thing, the value found and what was expected.
+//! The errors of this crate. Every message is one line that names the thing, the value found and what was expected.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use crate::raster::{PixelFormat, Size};
 
-/// The result of every fallible call of this crate.
+/// The result type of every fallible call of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Everything that this crate can fail with.
+/// Every error of this crate.
 ///
 /// The variants carry both values where two are compared, so that a caller can act on them without reading the text.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum Error {
     Io {
         /// The file, or a name such as `standard input`.
         path: PathBuf,
-        /// What the operating system said.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// A file was read, but its content is not what its format demands.
@@ -44,20 +44,20 @@ pub enum Error {
         /// The range or set of legal values.
         expected: String,
     },
-    /// A slice is too short or too long for the picture that it should hold.
+    /// A slice is too short or too long for the image that it should hold.
     #[error("{what} holds {found} elements, expected {expected}")]
     Length {
         /// What the slice holds, for example `frame data`.
         what: &'static str,
-        /// Its length.
+        /// Its length, in elements.
         found: usize,
-        /// The length that the size, format and stride ask for.
+        /// The length that size, format and stride require.
         expected: usize,
     },
-    /// Two pictures that belong together differ in size.
+    /// Two images that belong together differ in size.
     #[error("{what} is {found}, expected {expected}")]
     SizeMismatch {
-        /// Which picture, for example `second frame`.
+        /// The image, for example `second frame`.
         what: String,
         /// Its size.
         found: Size,
@@ -72,7 +72,7 @@ pub enum Error {
         /// The engine's format.
         expected: PixelFormat,
     },
-    /// A picture is larger than the adapter allows.
+    /// An image is larger than the adapter allows.
     #[error("{what} of {size} needs {needed} bytes, over the limit of {limit} of {adapter}")]
     TooLarge {
         /// The buffer's name.
@@ -96,34 +96,34 @@ pub enum Error {
         /// Bytes of all buffers.
         needed: u64,
     },
-    /// No adapter fits. The message says what is there and what to install.
+    /// No adapter fits. The message lists the adapters found and says what to install.
     #[error("no usable GPU adapter: {reason}")]
     NoAdapter {
-        /// Why, and what can be done.
+        /// The reason, and what can be done about it.
         reason: String,
     },
-    /// The GPU device was lost and could not be brought back, or the caller did not ask for that.
+    /// The GPU device was lost and could not be reopened, or the caller did not ask for that.
     #[error("GPU device lost on {adapter}: {reason}")]
     DeviceLost {
         /// The adapter's name.
         adapter: String,
-        /// What the driver said.
+        /// The driver's message.
         reason: String,
     },
-    /// A frame was not done by its deadline. It may still be asked for again.
+    /// A frame was not done by its deadline. Its ticket stays valid: it can be waited for again.
     #[error("frame {frame} not done after {waited_ms} ms, deadline {deadline_ms} ms")]
     Timeout {
         /// The frame's number.
         frame: u64,
-        /// How long was waited.
+        /// The time waited, in milliseconds.
         waited_ms: u64,
-        /// How long it was allowed to take.
+        /// The time allowed, in milliseconds.
         deadline_ms: u64,
     },
     /// More frames are in flight than the engine has slots for.
     #[error("{in_flight} frames in flight, at most {limit}: wait for one before the next submit")]
     Busy {
-        /// Frames submitted and not yet taken.
+        /// Frames submitted whose results were not taken yet.
         in_flight: usize,
         /// Slots of the engine.
         limit: usize,
@@ -226,7 +226,8 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// One of each variant. A new variant does not compile in [`Error::code`] without a code, and belongs into this list.
+    /// One of each variant. A new variant does not compile in [`Error::code`] without a code, and belongs into this
+    /// list.
     fn each() -> Vec<Error> {
         let (size, text) = (Size::new(1, 1), String::new);
         vec![

@@ -1,60 +1,60 @@
-//! What a kernel is: one pure function, written once in WGSL and once in Rust, with the cases and the bound by which
-//! the two are compared.
+//! The kernel: one pure function, written once in WGSL and once in Rust, with the cases and the bound for comparing the
+//! two.
 
 use crate::frame::Size;
 
 /// A pure function from parameters and input buffers to output buffers.
 ///
 /// In WGSL binding 0 is `params` (uniform), then come the inputs (read-only storage), then the outputs, and the entry
-/// point is `main`. In Rust the reference takes the same things in the same order. Buffers are `f32`; a plane of a
-/// picture has rows of [`Size::stride`] values, whose surplus repeats the row's last pixel, and a picture of several
-/// channels holds row 0 of each channel, then row 1 of each channel, and so on.
+/// point is `main`. In Rust the reference takes the same arguments in the same order. Buffers are `f32`. A plane has
+/// rows of [`Size::stride`] values, whose surplus repeats the row's last pixel; an image of several channels holds row
+/// 0 of each channel, then row 1 of each channel, and so on.
 #[derive(Clone, Copy)]
 pub struct Kernel {
-    /// The one name: of the shader file, the module, the label, the test and the bench.
+    /// The name of the shader file, the module, the label, the test and the benchmark: all the same.
     pub name: &'static str,
     /// The WGSL text: the kernel's file, then the library files that it uses.
     pub source: &'static str,
-    /// The uniform struct, as Rust lays it out.
+    /// The layout of the uniform struct in Rust.
     pub params: Layout,
     /// Names of the input buffers, in the order of their bindings.
     pub inputs: &'static [&'static str],
     /// Names of the output buffers, in the order of their bindings.
     pub outputs: &'static [&'static str],
-    /// The CPU side. Parameters come as the bytes of the uniform struct.
+    /// The CPU side. Its parameters are the bytes of the uniform struct.
     pub reference: Reference,
-    /// Inputs to compare the two sides on, for a picture of the given size.
+    /// The cases on which the two sides are compared, for an image of the given size.
     pub cases: fn(Size) -> Vec<Case>,
-    /// How far the two sides may differ, and why.
+    /// The largest allowed difference between the two sides, and its reason.
     pub tolerance: Tolerance,
-    /// How far roundings alone may drive the two sides apart, value by value, where that hangs on the values themselves:
-    /// from the same parameters and inputs as the reference, and added to the tolerance.
+    /// The largest difference that roundings alone may cause, value by value, where it depends on the values. It is
+    /// computed from the parameters and inputs of the reference, and added to the tolerance.
     pub rounding: Option<Reference>,
     /// The sets of constants that the shader can be compiled with. The first one is the default.
     pub variants: &'static [Variant],
 }
 
-/// A named set of values for a shader's `override` constants, such as a workgroup's size. A variant changes how the work
-/// is shared out, not what is computed: every one is clamped to the kernel's tolerance.
+/// A named set of values for a shader's `override` constants, such as a workgroup's size. A variant changes how the
+/// work is divided, not the result: the kernel's tolerance applies to every variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variant {
     /// The name, for a [`Tuning`](crate::gpu::Tuning), messages and tests.
     pub name: &'static str,
-    /// Names of `override` constants and their values. Others keep the value that stands in the shader.
+    /// Names of `override` constants and their values. Other constants keep the shader's value.
     pub constants: &'static [(&'static str, f64)],
 }
 
 impl Variant {
-    /// The values that stand in the shader.
+    /// The default variant: the shader's own values.
     pub const DEFAULT: Self = Self { name: "default", constants: &[] };
 }
 
 impl Kernel {
-    /// The bounds of one run, one for each output, from its arguments and what the reference made of them.
+    /// The bounds of one run, one per output, from its arguments and the reference's outputs.
     pub fn bounds(&self, params: &[u8], inputs: &[&[f32]], expected: &[&[f32]]) -> Vec<Bound> {
         let mut own = vec![Vec::new(); expected.len()];
         if let Some(rounding) = self.rounding {
-            // A bound that is not written is not a number, and takes in nothing.
+            // A bound that is not written is NaN, and no value lies within it.
             own = expected.iter().map(|values| vec![f32::NAN; values.len()]).collect();
             rounding(params, inputs, &mut own.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
         }
@@ -67,18 +67,18 @@ impl Kernel {
     }
 }
 
-/// The largest magnitude, 0 where there is none.
+/// The largest magnitude; 0 for no values.
 fn largest(values: &[f32]) -> f32 {
     values.iter().map(|value| value.abs()).filter(|value| value.is_finite()).fold(0.0, f32::max)
 }
 
-/// The CPU side of a kernel: bytes of the parameters, inputs, outputs.
+/// The CPU side of a kernel. Arguments: the bytes of the parameters, the input buffers, the output buffers.
 pub type Reference = fn(&[u8], &[&[f32]], &mut [&mut [f32]]);
 
-/// A uniform struct as Rust lays it out, to be compared with what the shader declares.
+/// The layout of a uniform struct in Rust, to compare with the shader's declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// Bytes of the struct.
+    /// Size of the struct in bytes.
     pub size: usize,
     /// The fields in order.
     pub fields: &'static [Field],
@@ -89,29 +89,29 @@ pub struct Layout {
 pub struct Field {
     /// The field's name.
     pub name: &'static str,
-    /// Bytes from the struct's beginning.
+    /// Offset from the struct's beginning, in bytes.
     pub offset: usize,
     /// The WGSL name of its type.
     pub ty: &'static str,
 }
 
-/// One set of arguments to compare the two sides of a kernel on.
+/// One set of arguments for comparing the two sides of a kernel.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What is special about it, for example `textured`.
+    /// The case's name, for example `textured`.
     pub name: String,
-    /// Bytes of the parameters.
+    /// The bytes of the parameters.
     pub params: Vec<u8>,
     /// The input buffers.
     pub inputs: Vec<Vec<f32>>,
     /// Lengths of the output buffers.
     pub outputs: Vec<usize>,
-    /// Width and height of what is computed.
+    /// Width and height of the computed image.
     pub extent: Size,
 }
 
-/// How far two results may lie apart: `|a − b| ≤ absolute + relative · |reference| + of_largest · largest`, and what
-/// [`Kernel::rounding`] adds.
+/// The largest allowed difference of two results: `|a − b| ≤ absolute + relative · |reference| + of_largest · largest`,
+/// plus what [`Kernel::rounding`] adds.
 ///
 /// `largest` is the largest magnitude in the kernel's first input and in the reference's output: sums that cancel keep
 /// the roundings of their terms.
@@ -121,26 +121,26 @@ pub struct Tolerance {
     pub absolute: f32,
     /// The part that grows with the reference's magnitude.
     pub relative: f32,
-    /// The part that grows with the largest value that is about.
+    /// The part that grows with the largest value.
     pub of_largest: f32,
-    /// Why this much and not less.
+    /// The reason for this size.
     pub reason: &'static str,
 }
 
-/// How far the values of one output may lie off in one run: `absolute + relative · |reference| + own`.
+/// The largest allowed difference of the values of one output in one run: `absolute + relative · |reference| + own`.
 #[derive(Clone, Debug, Default)]
 pub struct Bound {
     /// The absolute part, with the tolerance's share of the largest value.
     pub absolute: f32,
     /// The part that grows with the reference's magnitude.
     pub relative: f32,
-    /// Each value's own part, one a value; empty where the kernel's tolerance says all.
+    /// Each value's own part, one per value of the output; empty if the kernel's tolerance is the whole bound.
     pub own: Vec<f32>,
 }
 
 impl Bound {
-    /// The bound of one value, for which the reference has `expected`. A value that the own part leaves out has none: not
-    /// a number.
+    /// The bound of the value at an index, whose reference is `expected`. NaN for a value beyond the end of an own part
+    /// that is not empty.
     pub fn at(&self, index: usize, expected: f32) -> f32 {
         let magnitude = if expected.is_finite() { expected.abs() } else { 0.0 };
         let own = if self.own.is_empty() { 0.0 } else { self.own.get(index).copied().unwrap_or(f32::NAN) };
@@ -169,7 +169,7 @@ uniform_fields!(
     [f32; 4] => "vec4<f32>", [u32; 4] => "vec4<u32>", [i32; 4] => "vec4<i32>",
 );
 
-/// Defines a kernel's uniform struct and notes its layout, so that naga can compare it with the shader's.
+/// Defines a kernel's uniform struct and records its layout, so that naga can compare it with the shader's.
 macro_rules! params {
     ($(#[$meta:meta])* struct $name:ident { $($(#[$field_meta:meta])* $field:ident: $ty:ty,)* }) => {
         $(#[$meta])*
@@ -190,7 +190,7 @@ macro_rules! params {
     };
 }
 
-/// The text of a shader: `shaders/<kernel>.wgsl`, then the named files of `shaders/lib/`.
+/// The text of a shader: `shaders/<kernel>.wgsl`, followed by the named files of `shaders/lib/`.
 ///
 /// The kernel comes first, so that line numbers in the compiler's messages are those of its file.
 macro_rules! wgsl {

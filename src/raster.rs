@@ -1,8 +1,8 @@
-//! A picture's size and pixel format: plain values that even an error can name. [`crate::frame`] has them for users.
+//! An image's size and pixel format, on which even [`crate::error`] depends. [`crate::frame`] exports them to users.
 
 use std::fmt;
 
-/// Width and height of a picture in pixels.
+/// Width and height of an image, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Size {
@@ -13,7 +13,7 @@ pub struct Size {
 }
 
 impl Size {
-    /// The largest side that is accepted, in pixels. It keeps every index of a picture within 32 bits.
+    /// The largest side that is accepted, in pixels. It keeps every index into an image within 32 bits.
     pub const MAX_SIDE: u32 = 16384;
 
     /// A size, unchecked. See [`Size::validate`].
@@ -38,13 +38,14 @@ impl fmt::Display for Size {
     }
 }
 
-/// How a pixel is stored.
+/// The storage of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum PixelFormat {
     /// One byte, 0 to 255.
     Gray8,
-    /// Two bytes in the machine's byte order, 0 to 65535. White is as bright as 255 in 8 bits, with fractions between.
+    /// Two bytes in the machine's byte order, 0 to 65535. White corresponds to 255 in 8 bits; values between keep their
+    /// fractions.
     Gray16,
     /// Three bytes: red, green, blue.
     Rgb8,
@@ -63,7 +64,7 @@ impl PixelFormat {
         }
     }
 
-    /// Words of four bytes of one row in a plan's buffer: every row begins at a whole word.
+    /// Four-byte words per row in a plan's buffer: every row begins at a whole word.
     pub const fn row_words(self, width: u32) -> usize {
         (width as usize * self.bytes()).div_ceil(4)
     }

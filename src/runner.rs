@@ -1,7 +1,7 @@
-//! Runs a plan on single pictures or pairs, one call at a time, on either executor.
+//! Runs a plan on single images or pairs, one call at a time, on either executor.
 //!
-//! It is what undistortion, the simulator's renderer and comparisons of the two executors need. Streams of frames in real
-//! time go through [`Stream`](crate::stream::Stream).
+//! Undistortion, the simulator's renderer and comparisons of the two executors use it. For streams of frames in real
+//! time see [`Stream`](crate::stream::Stream).
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -38,7 +38,7 @@ struct OnGpu {
 }
 
 impl Runner {
-    /// Makes the plan's buffers and runs what is computed once.
+    /// Allocates the plan's buffers and runs its setup steps.
     ///
     /// # Errors
     /// [`Error::Kernel`](crate::Error::Kernel) for a plan that contradicts itself; on a GPU also
@@ -72,7 +72,7 @@ impl Runner {
         &self.plan
     }
 
-    /// Runs a plan for single pictures.
+    /// Runs a plan for single images.
     ///
     /// # Errors
     /// As [`Plan::check`]; [`Error::DeviceLost`](crate::Error::DeviceLost) if the device was lost.
@@ -80,8 +80,8 @@ impl Runner {
         self.frame(0, true, given)
     }
 
-    /// Runs what is to be computed of a frame with this parity and, if it is the later one of a pair, of the pair. The
-    /// outputs are read after a pair only; before, they hold what they held.
+    /// Runs the ingest steps of a frame with this parity and, if it is the later frame of a pair, the steps of the
+    /// pair. The outputs are read after a pair only; otherwise they keep their previous values.
     ///
     /// # Errors
     /// As [`Runner::run`].
@@ -136,7 +136,7 @@ impl Runner {
         }
     }
 
-    /// Writes the first values of a buffer.
+    /// Writes `values` to the beginning of a buffer.
     pub fn write(&mut self, id: BufId, values: &[f32]) {
         match &mut self.side {
             Side::Cpu(exec) => exec.buf_mut(id)[..values.len()].copy_from_slice(values),
@@ -179,7 +179,7 @@ impl OnGpu {
     ) -> Result<()> {
         // wgpu panics where it is out of memory and nobody handles its errors.
         let submitted = catch_unwind(AssertUnwindSafe(|| self.submit(plan, parity, pair, given)));
-        submitted.map_err(|_| self.gpu.lost_error("the driver failed while a picture was submitted"))?;
+        submitted.map_err(|_| self.gpu.lost_error("the driver failed while an image was submitted"))?;
         self.gpu.finish()?;
         let Some(readback) = self.readback.as_ref().filter(|_| pair) else { return Ok(()) };
         let view = readback.get_mapped_range(..).map_err(|error| self.gpu.lost_error(error.to_string()))?;

@@ -20,8 +20,8 @@
 //! # }
 //! ```
 //!
-//! [`CUE_SCHEMA`] is the JSON Schema of an object. What is not known is `null`. Later versions may add members, so a reader
-//! ignores those that it does not know.
+//! [`CUE_SCHEMA`] is the JSON Schema of an object. Unknown values are `null`. Later versions may add members, so a
+//! reader should ignore members that it does not know.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,23 +38,25 @@ pub struct CueMessage {
     pub frame: u64,
     /// The frame's time, seconds.
     pub time_s: f64,
-    /// Whether the cue may be used. The other members of an invalid cue are for diagnosis; its sectors have no times.
+    /// Whether the cue may be used. The other members of an invalid cue are for diagnosis only; its sectors have no
+    /// times.
     pub valid: bool,
-    /// The kind of the reason why the cue is invalid.
+    /// The kind of the reason why the cue is invalid; `null` if it is valid.
     pub invalid_kind: Option<InvalidKind>,
-    /// The reason, to read.
+    /// The reason as text; `null` if the cue is valid.
     pub invalid: Option<String>,
-    /// The direction of motion, where it is known.
+    /// The direction of motion; `null` if it is unknown.
     pub heading: Option<HeadingMessage>,
-    /// What will be met first, if anything soon.
+    /// The threat that will be met first; `null` without a threat.
     pub threat: Option<ThreatMessage>,
     /// The sectors of the view.
     pub sectors: SectorsMessage,
-    /// How the frame went through. Of the whole message this alone differs from run to run.
+    /// The frame's timing: the only member that differs from run to run.
     pub timing: Timing,
 }
 
-/// A direction in the camera's frame: azimuth is positive to the right, elevation positive up, both 0 on the optical axis.
+/// A direction in the camera's frame: azimuth is positive to the right, elevation positive up, both 0 on the optical
+/// axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadingMessage {
     /// Azimuth, degrees.
@@ -65,7 +67,7 @@ pub struct HeadingMessage {
     pub error_deg: f64,
 }
 
-/// Something that will be met soon.
+/// A threat: connected sectors on a collision course.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ThreatMessage {
     /// Azimuth of its centre, degrees.
@@ -76,7 +78,7 @@ pub struct ThreatMessage {
     pub time_s: f64,
     /// Number of sectors that it fills.
     pub sectors: usize,
-    /// Whether it was there for as many frames in a row as an alarm needs.
+    /// Whether it was seen in as many consecutive frames as an alarm needs.
     pub alarm: bool,
 }
 
@@ -95,12 +97,12 @@ pub struct SectorsMessage {
     pub ttc_s: Vec<Option<f64>>,
     /// Share of the sector whose flow is trusted, 0 to 1.
     pub coverage: Vec<f64>,
-    /// Further lists, whose members stand beside these ones.
+    /// Further lists, flattened into the same object.
     #[serde(flatten)]
     pub detail: Option<SectorDetail>,
 }
 
-/// Further values of the sectors, in lists as those of [`SectorsMessage`].
+/// Further values of the sectors, in lists with the layout of [`SectorsMessage`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SectorDetail {
     /// Lower quantile of the time to contact, seconds.
@@ -115,19 +117,19 @@ pub struct SectorDetail {
     pub confidence: Vec<f64>,
 }
 
-/// How a frame went through.
+/// The timing of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// From when the frame was there until the cue was, milliseconds.
+    /// Time from the frame's arrival until the cue, milliseconds.
     pub age_ms: f64,
-    /// From when the frame was submitted until the cue was there, milliseconds.
+    /// Time from the frame's submission until the cue, milliseconds.
     pub latency_ms: f64,
-    /// Frames that were dropped so far.
+    /// Number of frames dropped so far.
     pub dropped: u64,
 }
 
 impl CueMessage {
-    /// The message about the frame of a number, with the [`SectorDetail`] if it is asked for.
+    /// The message of a cue, for the frame of this number in its source; with the [`SectorDetail`] if `detail` is true.
     pub fn new(frame: u64, cue: &Cue<'_>, timing: Timing, detail: bool) -> Self {
         let Timing { age_ms, latency_ms, dropped } = timing;
         let heading = Some(cue.heading).filter(|heading| heading.is_known()).map(|heading| {
@@ -160,7 +162,7 @@ impl CueMessage {
 }
 
 impl SectorsMessage {
-    /// An invalid cue gives no times and no rates, so that none can be taken for valid ones.
+    /// An invalid cue has no times and no rates, so that none can be mistaken for valid ones.
     fn new(all: &Sectors, valid: bool, detail: bool) -> Self {
         let times = |which: usize| {
             let of = |sector| all.time_to_contact_s(sector)[which].filter(|_| valid);
@@ -197,7 +199,7 @@ fn degrees(radians: f64) -> f64 {
 fn round(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
     let rounded = (value * scale).round() / scale;
-    // −0 would be written as such.
+    // Without this, −0 would be written as such.
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 

@@ -1,6 +1,6 @@
 
 // Rows of five channels, `columns`, averaged by a symmetric window: sixteen columns at a time, the window sliding in
-// registers, four new columns a step.
+// registers, four new columns per step.
 
 const MAX_STEPS = 258u;
 
@@ -53,7 +53,7 @@ fn add(s: Five, f0: Five, f1: Five, w: vec4f) -> Five {
     );
 }
 
-// Four columns; past the ends of the row the end's value.
+// Four columns; beyond the ends of the row the end's value.
 fn five(four: i32, y: u32) -> Five {
     let stride = (params.width + 3u) / 4u;
     let last = i32(stride) - 1;

@@ -1,5 +1,5 @@
 
-// Reading between the pixels of the frame of in_width × in_height that params describe.
+// Bilinear sampling of the frame of in_width × in_height that params describe.
 
 struct Between {
     left: u32,

@@ -1,8 +1,8 @@
 
-// 1 against the standard error of a flow, from what stands behind it.
-// The mean of AᵀA over its pixels, the mean square of what it leaves of Δb, and the share of its pixels both frames show.
+// The confidence of a flow, from its standard error. Arguments: the mean of AᵀA over its pixels, the mean square of the
+// residual of Δb, and the share that both frames show.
 
-// What the expansion of a picture without motion leaves of Δb, squared, by rounding to whole gray levels.
+// The squared residual of Δb that rounding to whole gray levels causes in an image without motion.
 const NOISE = 0.001;
 // The error that halves the confidence, in pixels.
 const HALF = 0.25;

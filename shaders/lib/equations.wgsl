@@ -7,7 +7,7 @@ struct Expansion {
     cross_term: f32, // 2 A_xy
 }
 
-// The expansion between the four pixels around a place, by their weights.
+// The expansion at a place: the weighted mean of the four pixels around it.
 fn bilinear(a: Expansion, b: Expansion, c: Expansion, d: Expansion, f: vec2f) -> Expansion {
     let w_a = (1.0 - f.x) * (1.0 - f.y);
     let w_b = f.x * (1.0 - f.y);
@@ -29,7 +29,7 @@ fn squared(a: vec3f) -> vec3f {
     return vec3f(a.x * a.x + a.y * a.y, (a.x + a.z) * a.y, a.z * a.z + a.y * a.y);
 }
 
-// How much the pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
+// The weights of pixels near the border: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
 fn border_weight(i: u32, n: u32) -> f32 {
     let far = n - 1u - i;
     return step_weight(i) * step_weight(far);

@@ -1,5 +1,5 @@
 
-// Pictures: rows of vec4f, four pixels each; the surplus of the last one repeats the row's last pixel.
+// Images: rows of vec4f, four pixels each; the surplus of the last one repeats the row's last pixel.
 
 // v, of the four pixels from x0 on, with everything past the last column replaced by the last column's value.
 fn repeat_last(v: vec4f, x0: u32, width: u32) -> vec4f {
@@ -11,7 +11,8 @@ fn repeat_last(v: vec4f, x0: u32, width: u32) -> vec4f {
 // Index i of a row of n samples mirrored at its ends, the end samples not repeated: … 2 1 | 0 1 2 … n−1 | n−2 …
 fn reflect_101(i: i32, n: i32) -> u32 {
     let period = max(2 * (n - 1), 1);
-    // The remainder by way of f32: its quotient is off by one at most, and no processor divides whole numbers by the vector.
+    // The remainder by way of f32: its quotient is off by one at most, and no processor divides whole numbers by the
+    // vector.
     let rest = abs(i) - i32(f32(abs(i)) / f32(period)) * period;
     let j = select(select(rest, rest - period, rest >= period), rest + period, rest < 0);
     return u32(select(min(j, period - j), 0, n == 1));

@@ -72,10 +72,10 @@ fn solve(m: Moments, min_share: f32, least: f32) -> Solution {
     let y = yf / yy - ry * r - qy * q - py * p;
     let x = xf / xx - rx * r - qx * q - px * p - yx * y;
 
-    // A pivot against its diagonal: the share of a term that the terms before do not explain.
+    // A pivot against its diagonal: the share of a term that the terms before it do not explain.
     let share_1 = min(xx / m.m_20, yy / m.m_02);
     let share_2 = min(min(pp / m.m_40, qq / m.m_04), rr / m.m_22);
-    // Where a pivot is zero or negative, the ones after it may be anything, so each is looked at.
+    // Where a pivot is zero or negative, the ones after it are arbitrary, so each is checked.
     let determined = (m.m_00 > vec4f(least))
         & (xx > min_share * m.m_20) & (yy > min_share * m.m_02)
         & (pp > min_share * m.m_40) & (qq > min_share * m.m_04) & (rr > min_share * m.m_22);

@@ -1,7 +1,7 @@
 
 // The lens: Brown 1971 with a rational radial factor, in OpenCV's order of the coefficients.
 
-// Where the lens shows what an ideal pinhole would show at (x, y), both at a distance of 1.
+// The place at which the lens shows what an ideal pinhole shows at (x, y), both in the plane at unit distance.
 // a: k1 k2 p1 p2, b: k3 k4 k5 k6.
 fn distort(ideal: vec2f, a: vec4f, b: vec4f) -> vec2f {
     let x = ideal.x;

@@ -1,12 +1,12 @@
 
-// The endless texture of the simulator: octaves of random values on grids, smoothed by a cubic B-spline.
+// The unbounded texture of the simulator: octaves of random values on grids, smoothed by a cubic B-spline.
 
 const OCTAVES = 11u;
 const FULL_LOG2 = 1.5;
 const AMPLITUDE = 50.0;
 
-// `place` is in metres beyond `cells`, which counts grid spacings of the coarsest octave; along u in turns if there is a
-// period. A pixel covers a length whose logarithm to base 2 is `footprint`.
+// `place` is in metres beyond `cells`, which counts grid spacings of the coarsest octave; along u in turns if there is
+// a period. A pixel covers a length whose logarithm to base 2 is `footprint`.
 fn textured(place: vec2f, cells: vec2i, period: f32, seed: u32, footprint: f32) -> f32 {
     var sum = 128.0;
     let around = period > 0.0;
@@ -16,7 +16,7 @@ fn textured(place: vec2f, cells: vec2i, period: f32, seed: u32, footprint: f32) 
             break;
         }
         let per_metre = 0.25 * f32(1u << octave);
-        // Around a period there is a whole number of grid points.
+        // A period contains a whole number of grid points.
         let points = max(floor(period * per_metre + 0.5), 1.0);
         let turn = select(0.0, 1.0 / points, around);
         let at = place * vec2f(select(per_metre, points, around), per_metre);

@@ -1,5 +1,5 @@
 
-// The second frame's expansion read between pixels, from quad_1 and cross_term_1.
+// The second frame's expansion, sampled bilinearly from quad_1 and cross_term_1.
 
 struct Second {
     expansion: Expansion,
@@ -9,11 +9,11 @@ struct Second {
 fn second_at(place: vec2f) -> Second {
     let stride = (params.width + 3u) / 4u * 4u;
     let whole = floor(place);
-    // A place that is not a number is not inside either.
+    // NaN is not inside either.
     let inside = all(whole >= vec2f()) && all(whole < vec2f(f32(params.width), f32(params.height)) - 1.0);
     let at = vec2u(select(vec2f(), whole, inside));
     let i = at.y * stride + at.x;
-    // A picture one pixel wide or high has no neighbours to read, and nothing is inside it.
+    // An image one pixel wide or high has no neighbours to read, and no place is inside it.
     let right = select(0u, 1u, inside);
     let below = select(0u, stride, inside);
     let expansion = bilinear(
@@ -26,7 +26,7 @@ fn second_at(place: vec2f) -> Second {
     return Second(expansion, inside);
 }
 
-// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
+// Where the second frame has no expansion, the first one's is used alone and contains no motion: b2 = b1 = 0.
 fn model(first: Expansion, second: Second, flow: vec2f) -> Model {
     let other = second.expansion;
     let a_xx = select(first.quad.z, 0.5 * (first.quad.z + other.quad.z), second.inside);

@@ -16,7 +16,7 @@ fn solution(equations: Five) -> Solution {
     return Solution(known((g_yy * h_x - g_xy * h_y) * scale), known((g_xx * h_y - g_xy * h_x) * scale));
 }
 
-// What overflow left without a value counts as no motion, so that it cannot spread.
+// A result without a value, after overflow, becomes zero motion, so that it cannot spread.
 fn known(d: vec4f) -> vec4f {
     return select(vec4f(), d, abs(d) <= vec4f(1e9));
 }

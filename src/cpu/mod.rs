@@ -1,10 +1,10 @@
-//! The CPU executor: a plan's steps, replayed on the kernels' references.
+//! The CPU executor: runs a plan's steps with the kernels' references.
 
 use crate::plan::{BufId, Content, Plan, Step};
 
-/// Kernels have at most this many input buffers: eight storage buffers a stage, one of them an output.
+/// The largest number of a kernel's input buffers: eight storage buffers per stage, one of them an output.
 const MAX_INPUTS: usize = 7;
-/// And at most this many outputs.
+/// The largest number of a kernel's output buffers.
 const MAX_OUTPUTS: usize = 3;
 
 /// A plan's buffers in main memory.
@@ -13,7 +13,7 @@ pub struct CpuExecutor {
 }
 
 impl CpuExecutor {
-    /// Allocates the buffers and runs what is computed once. Nothing is allocated afterwards.
+    /// Allocates the buffers and runs the setup steps. Nothing is allocated afterwards.
     pub fn new(plan: &Plan) -> Self {
         let values = |content: &Content, len| match content {
             Content::Constant(values) => values.clone(),
@@ -24,19 +24,20 @@ impl CpuExecutor {
         executor
     }
 
-    /// A buffer's values.
+    /// A buffer's values, in the layout of its [`Shape`](crate::plan::Shape).
     pub fn buf(&self, id: BufId) -> &[f32] {
         &self.bufs[id.index()]
     }
 
-    /// A buffer's values, to be written.
+    /// A buffer's values, for writing.
     pub fn buf_mut(&mut self, id: BufId) -> &mut [f32] {
         &mut self.bufs[id.index()]
     }
 
     /// Runs one step of the plan that this executor was made for.
     pub fn run(&mut self, step: &Step) {
-        // A plan's check rules out that an output is an input, so outputs can be taken out while inputs are borrowed.
+        // The plan's check excludes that an output is also an input, so outputs can be moved out while inputs are
+        // borrowed.
         let mut taken = [const { Vec::new() }; MAX_OUTPUTS];
         for (taken, (output, _)) in taken.iter_mut().zip(&step.outputs) {
             *taken = std::mem::take(&mut self.bufs[output.index()]);

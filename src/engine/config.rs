@@ -11,19 +11,20 @@ use crate::stream::StreamConfig;
 pub struct Config {
     /// The estimator and its parameters.
     pub algorithm: Algorithm,
-    /// How the frames' pixels are stored.
+    /// The pixel format of the frames.
     pub format: PixelFormat,
-    /// Whether frames may come with a certainty of their pixels ([`FrameInputs::certainty`]).
+    /// Whether a frame may have a certainty of its pixels ([`FrameInputs::certainty`]).
     pub certainty: bool,
-    /// Whether the confidence of the flow is computed and brought to the host.
+    /// Whether the confidence of the flow is computed and read back to the host.
     pub confidence: bool,
-    /// Whether an initial flow may come with a frame ([`FrameInputs::initial_flow`]).
+    /// Whether a frame may have an initial flow ([`FrameInputs::initial_flow`]).
     pub initial_flow: bool,
-    /// Whether a pair without an initial flow of its own begins with the flow of the previous pair, in place of no motion.
+    /// Whether the search of a pair without an initial flow begins with the flow of the previous pair, in place of zero
+    /// motion.
     pub warm_start: bool,
-    /// Whether the flow is brought to the host.
+    /// Whether the flow is read back to the host.
     pub read_flow: bool,
-    /// How the stream is run.
+    /// The configuration of the stream.
     pub stream: StreamConfig,
 }
 
@@ -52,7 +53,7 @@ impl Config {
         self.stream.validate()
     }
 
-    /// What the plan takes and gives beside frames and flow.
+    /// The plan's options: its inputs beside frames, and its outputs beside flow.
     pub fn options(&self) -> FlowOptions {
         let initial = match (self.initial_flow, self.warm_start) {
             (_, true) => Initial::Previous,
@@ -63,13 +64,14 @@ impl Config {
     }
 }
 
-/// What may come with a frame.
+/// Optional inputs of a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameInputs<'a> {
-    /// How far each pixel is to be trusted, 0 to 1. Values outside are clamped, and NaN is 0. Needs
-    /// [`Config::certainty`]; a frame without one is trusted everywhere.
+    /// The certainty of each pixel, 0 to 1, in a plane of the frame's size. Values outside the range are clamped, and
+    /// NaN is 0. Needs [`Config::certainty`]; without it the certainty is 1 everywhere.
     pub certainty: Option<&'a Plane>,
-    /// What the search for the flow to this frame begins with, in pixels; an unknown displacement is zero. Needs
-    /// [`Config::initial_flow`] or [`Config::warm_start`]. A first frame has no use for it.
+    /// The flow with which the search begins, in pixels from the previous frame to this one, of the frame's size; an
+    /// unknown displacement is zero. Needs [`Config::initial_flow`] or [`Config::warm_start`]. A first frame ignores
+    /// it.
     pub initial_flow: Option<&'a FlowField>,
 }

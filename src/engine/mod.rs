@@ -1,7 +1,7 @@
-//! Flow of a stream of frames, in real time.
+//! The engine: optical flow of a stream of frames, in real time.
 //!
-//! An engine is a [`Stream`] of the plan of an estimator: see there for how frames are submitted, waited for, dropped and
-//! lost.
+//! An engine is a [`Stream`] that runs the plan of a flow estimator. [`Stream`] describes how frames are submitted,
+//! waited for, dropped and lost.
 
 mod config;
 
@@ -19,23 +19,24 @@ use crate::stream::{Done, Latency, StageTime, Stats, Stream, Ticket, TimeSource}
 
 /// Computes the flow of a stream of frames of one size and format.
 ///
-/// All memory is taken when it is made; a frame takes none, apart from what wgpu and rayon take by themselves.
+/// [`Engine::new`] allocates all memory; a frame allocates none, apart from wgpu's and rayon's own allocations.
 pub struct Engine {
     stream: Stream<()>,
 }
 
-/// What was computed of a frame and the previous one.
+/// The flow of a frame and the previous one.
 #[derive(Clone, Copy, Debug)]
 pub struct Output<'a> {
     /// The frame's number.
     pub frame: u64,
-    /// The number of the frame that the flow leads from: the previous one, unless that one was dropped.
+    /// The number of the frame from which the flow leads: the previous one, unless that one was dropped.
     pub previous: u64,
-    /// Displacements in pixels from the previous frame to this one, if [`Config::read_flow`] asks for them.
+    /// Displacements in pixels from the previous frame to this one, one per pixel of the frame, if
+    /// [`Config::read_flow`] asks for them.
     pub flow: Option<&'a FlowField>,
-    /// How far the flow is to be trusted, 0 to 1, if [`Config::confidence`] asks for it.
+    /// The confidence of each pixel's flow, 0 to 1, if [`Config::confidence`] asks for it.
     pub confidence: Option<&'a Plane>,
-    /// Time from submit until now.
+    /// Time from the submit to the return of the wait.
     pub latency: Duration,
 }
 
@@ -79,11 +80,11 @@ impl<'a> Output<'a> {
 }
 
 impl Engine {
-    /// Makes an engine for frames of this size.
+    /// Creates an engine for frames of this size.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a parameter or size that is out of range; [`Error::TooLarge`] and
-    /// [`Error::OutOfMemory`] if the adapter has no room for such frames; [`Error::DeviceLost`] if it is gone.
+    /// [`Error::OutOfMemory`] if the adapter has no room for such frames; [`Error::DeviceLost`] if its device is lost.
     pub fn new(backend: Backend, size: Size, config: &Config) -> Result<Self> {
         config.validate()?;
         let mut plan = flow::plan(&config.algorithm, size, config.format, config.options())?;
@@ -91,7 +92,7 @@ impl Engine {
         Ok(Self { stream: Stream::new(&backend, plan, &config.stream)? })
     }
 
-    /// Takes a frame. Its pixels are copied, and the call does not wait for anything.
+    /// Submits a frame. Its pixels are copied; the call does not wait.
     ///
     /// # Errors
     /// [`Error::SizeMismatch`] and [`Error::PixelFormat`] for a frame of another kind than the stream's; otherwise as
@@ -100,10 +101,10 @@ impl Engine {
         self.submit_with(frame, &FrameInputs::default())
     }
 
-    /// Takes a frame and what comes with it. See [`Engine::submit`].
+    /// Submits a frame with further inputs. See [`Engine::submit`].
     ///
     /// # Errors
-    /// As [`Engine::submit`]; also [`Error::Parameter`] for an input that the configuration does not provide for, and
+    /// As [`Engine::submit`]; also [`Error::Parameter`] for an input that the configuration does not allow, and
     /// [`Error::Length`] or [`Error::SizeMismatch`] for one that does not fit the frame.
     pub fn submit_with(&mut self, frame: &Frame<'_>, frame_inputs: &FrameInputs<'_>) -> Result<Ticket> {
         self.check(frame_inputs)?;
@@ -118,7 +119,8 @@ impl Engine {
         self.stream.poll(ticket)
     }
 
-    /// Waits for a frame. None if it has no previous one: it is the first, or the first after a reset or a loss.
+    /// Waits for a frame. None if it has no previous frame: it is the first one, or the first one after a reset or a
+    /// loss.
     ///
     /// # Errors
     /// As [`Stream::wait`].
@@ -129,15 +131,16 @@ impl Engine {
     /// Submits a frame and waits for it.
     ///
     /// # Errors
-    /// As [`Engine::submit`] and [`Engine::wait`]. A frame that is late is given up and counted as dropped.
+    /// As [`Engine::submit`] and [`Engine::wait`]. A frame that misses its deadline is given up and counted as dropped.
     pub fn process(&mut self, frame: &Frame<'_>) -> Result<Option<Output<'_>>> {
         self.process_with(frame, &FrameInputs::default())
     }
 
-    /// Submits a frame and what comes with it, and waits for it.
+    /// Submits a frame with further inputs and waits for it.
     ///
     /// # Errors
-    /// As [`Engine::submit_with`] and [`Engine::wait`]. A frame that is late is given up and counted as dropped.
+    /// As [`Engine::submit_with`] and [`Engine::wait`]. A frame that misses its deadline is given up and counted as
+    /// dropped.
     pub fn process_with(
         &mut self,
         frame: &Frame<'_>,
@@ -147,7 +150,8 @@ impl Engine {
         Ok(Output::of(self.stream.process(&given(frame, frame_inputs), ())?))
     }
 
-    /// Begins the stream anew: the next frame is a first frame, and a warm start forgets. Frames in flight stay valid.
+    /// Restarts the stream: the next frame is a first frame, and a warm start forgets the previous flow. Frames in
+    /// flight stay valid.
     pub fn reset(&mut self) {
         self.stream.reset();
     }
@@ -164,22 +168,22 @@ impl Engine {
         Ok(())
     }
 
-    /// What computes: the adapter's name, or the CPU and its threads.
+    /// The executor: the adapter's name, or the CPU and its number of threads.
     pub fn adapter(&self) -> String {
         self.stream.adapter()
     }
 
-    /// The device in use, if it is a GPU; after a loss it is another one than before.
+    /// The device in use, if it is a GPU. After a loss it is a new device.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.stream.gpu()
     }
 
-    /// The latencies of the last frames that gave a result.
+    /// The latencies of the last frames with a result.
     pub fn latency(&self) -> Latency {
         self.stream.latency()
     }
 
-    /// What was counted.
+    /// The stream's counts.
     pub fn stats(&self) -> Stats {
         self.stream.stats()
     }
@@ -189,17 +193,17 @@ impl Engine {
         self.stream.stage_times()
     }
 
-    /// Where [`Engine::stage_times`] come from.
+    /// The clock of [`Engine::stage_times`].
     pub fn time_source(&self) -> TimeSource {
         self.stream.time_source()
     }
 
-    /// Bytes of the plan's buffers and of those for the frames in flight.
+    /// Total size of the plan's buffers and of the buffers for frames in flight, in bytes.
     pub fn buffer_bytes(&self) -> u64 {
         self.stream.buffer_bytes()
     }
 
-    /// What is computed of a frame.
+    /// The computation of a frame.
     pub fn plan(&self) -> &Plan {
         self.stream.plan()
     }

@@ -1,31 +1,31 @@
-//! Coarse to fine: the flow of each level of a pyramid, begun with that of the coarser one.
+//! Coarse-to-fine search: the flow of each level of a pyramid begins with that of the coarser level.
 
 use super::{Level, Wanted};
 use crate::kernels::{downsample_flow, tables, upsample};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
-/// The buffers of the flow on each level, and how the coarser level's is read.
+/// The buffers of the flow on each level, and the tables for reading the coarser level's flow.
 pub(super) struct CoarseToFine {
     levels: Vec<FlowLevel>,
     pyr_scale: f64,
     start: Start,
 }
 
-/// One level's flow and how the coarser level's is read.
+/// One level's flow, and the tables for reading the coarser level's.
 struct FlowLevel {
     level: Level,
-    /// The finest level's flow is the plan's.
+    /// None for the finest level, whose flow is the plan's.
     flow: Option<BufId>,
-    /// Where every other iteration's flow goes, if each is added to the previous one.
+    /// The second buffer, which every other iteration writes, if iterations add to the flow so far.
     other: Option<BufId>,
     place: Option<[BufId; 2]>,
 }
 
-/// What the coarsest level begins with.
+/// The initial flow of the coarsest level.
 enum Start {
-    /// No motion.
+    /// Zero motion.
     Zero(BufId),
-    /// The given flow, read by these covers.
+    /// The given flow, averaged by these tables.
     Given([BufId; 2]),
 }
 
@@ -35,16 +35,17 @@ pub(super) struct Iteration {
     pub(super) k: usize,
     /// The level.
     pub(super) level: Level,
-    /// What it is called, for example `level 2, iteration 1`.
+    /// Its label, for example `level 2, iteration 1`.
     pub(super) label: String,
-    /// The flow that it begins with: two channels.
+    /// The flow so far: two channels, in pixels of the level.
     pub(super) so_far: BufId,
-    /// Where its flow goes: another buffer, if iterations add to the flow so far.
+    /// The buffer of its result: another one than `from`, if iterations add to the flow so far.
     pub(super) flow: BufId,
 }
 
 impl CoarseToFine {
-    /// For these levels, finest first. If iterations add to the flow so far, they write by turns to two buffers.
+    /// Allocates the buffers for these levels, finest first. If iterations add to the flow so far, they write
+    /// alternately to two buffers.
     pub(super) fn new(bufs: &mut Bufs, levels: &[Level], pyr_scale: f64, wanted: Wanted, adds: bool) -> Self {
         let (finest, coarsest) = (levels[0].size, levels[levels.len() - 1].size);
         let start = if wanted.initial_flow {
@@ -76,8 +77,8 @@ impl CoarseToFine {
         Self { levels: levels.iter().enumerate().map(flow_level).collect(), pyr_scale, start }
     }
 
-    /// The steps of all levels, coarsest first, with so many iterations on each, of which `iterate` adds the steps. The
-    /// search begins with `initial`, if the plan has one, and the finest level's flow goes to `flow`.
+    /// The steps of all levels, coarsest first, with this many iterations on each; `iterate` adds the steps of one
+    /// iteration. The search begins with `initial`, if the plan has one, and the finest level's flow goes to `flow`.
     pub(super) fn steps(
         &self,
         iterations: u32,
@@ -89,7 +90,7 @@ impl CoarseToFine {
         let mut coarser: Option<(BufId, Level)> = None;
         for (k, level) in self.levels.iter().enumerate().rev() {
             let own = level.flow.unwrap_or(flow);
-            // The flow after this many iterations: after all of them the level's own.
+            // The buffer of the flow after this many iterations: after the last one the level's own.
             let after = |done: u32| match level.other {
                 Some(other) if !(iterations - done).is_multiple_of(2) => other,
                 _ => own,
@@ -110,7 +111,7 @@ impl CoarseToFine {
         steps
     }
 
-    /// The coarser level's flow as a beginning.
+    /// The step that reads the coarser level's flow as the initial flow.
     fn refine(&self, k: usize, level: &FlowLevel, coarse: BufId, of: Level, flow: BufId) -> Step {
         let size = level.level.size;
         let [place_x, place_y] = level.place.unwrap_or_else(|| unreachable!("a coarser level was computed"));
@@ -129,7 +130,7 @@ impl CoarseToFine {
         )
     }
 
-    /// A given flow as a beginning.
+    /// The step that reduces a given flow to the coarsest level.
     fn reduce(&self, k: usize, level: &FlowLevel, given: BufId, [x, y]: [BufId; 2], flow: BufId) -> Step {
         let (size, finest) = (level.level.size, self.levels[0].level.size);
         Step::new(

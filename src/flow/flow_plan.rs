@@ -6,32 +6,32 @@ use crate::frame::{PixelFormat, Size};
 use crate::kernels::luma;
 use crate::plan::{BufId, Bufs, Fill, Plan, Port, PortKind, Shape, Step};
 
-/// What a plan of flow takes and gives beside frames and flow.
+/// The options of a flow plan: its inputs beside frames, and its outputs beside flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlowOptions {
-    /// What a pair begins with.
+    /// The beginning of a pair's search.
     pub initial: Initial,
-    /// Whether each frame may come with a certainty of its pixels, the input `certainty`: a plane of values from 0 to 1,
-    /// to which others are clamped, and NaN is 0.
+    /// Whether each frame may have a certainty of its pixels, the input `certainty`: a plane of values from 0 to 1.
+    /// Other values are clamped, and NaN becomes 0.
     pub certainty: bool,
     /// Whether the output `confidence` is computed: a plane of values from 0 to 1.
     pub confidence: bool,
 }
 
-/// What a pair begins with.
+/// The beginning of a pair's search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Initial {
-    /// No motion.
+    /// Zero motion.
     #[default]
     Zero,
-    /// The input `initial_flow`, a field in pixels; no motion where none is given.
+    /// The input `initial_flow`, a field in pixels; zero motion for frames without one.
     Given,
-    /// The input `initial_flow`; where none is given, the flow of the previous pair.
+    /// The input `initial_flow`, a field in pixels; the flow of the previous pair for frames without one.
     Previous,
 }
 
-/// The plan from frames of this size and format to the output `flow`: displacements in pixels from the previous frame to
-/// the current one. Its input is `frame`; [`FlowOptions`] names the others.
+/// The plan from frames of this size and format to the output `flow`: displacements in pixels from the previous frame
+/// to the current one. Its input is `frame`; [`FlowOptions`] names the others.
 ///
 /// # Errors
 /// [`Error::Parameter`](crate::Error::Parameter) for a parameter or size that is out of range.
@@ -48,7 +48,7 @@ pub fn plan(algorithm: &Algorithm, size: Size, format: PixelFormat, options: Flo
     let certainty = certainty.then(|| bufs.input("certainty", share.len()));
     let first = bufs.computed("flow", Shape::planar(size, 2));
     let second = if begins { bufs.computed("flow of odd frames", Shape::planar(size, 2)) } else { first };
-    // A pair finds its beginning where the previous pair has left its flow.
+    // A pair reads its initial flow where the previous pair has written its flow.
     let (flow, found) = ([first, second], [second, first]);
     let wanted = Wanted { initial_flow: begins, certainty: certainty.is_some(), confidence, evidence: false };
     let stages = algorithm.stages(&mut bufs, size, wanted);

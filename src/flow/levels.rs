@@ -10,16 +10,17 @@ const SMALLEST_SIDE: f64 = 32.0;
 pub struct Level {
     /// Its size.
     pub size: Size,
-    /// Its pixels' size against the finest level's: 1 there, smaller on coarser ones.
+    /// Its scale relative to the finest level: 1 there, smaller on coarser levels.
     pub scale: f64,
-    /// Standard deviation of the Gaussian that the full picture is smoothed with before it is read, in its pixels.
+    /// Standard deviation of the Gaussian that smooths the full image before it is sampled, in pixels of the full
+    /// image.
     pub sigma: f64,
-    /// Samples of that Gaussian.
+    /// Number of samples of that Gaussian.
     pub taps: u32,
 }
 
-/// The levels from the finest to the coarsest: the full picture and at most `levels` reduced ones, as in OpenCV's
-/// `calcOpticalFlowFarneback`. They end before one whose shorter side would be under 32 pixels.
+/// The levels from the finest to the coarsest: the full image and at most `levels` reduced ones, as in OpenCV's
+/// `calcOpticalFlowFarneback`. Levels whose shorter side would be under 32 pixels are left out.
 pub fn levels(size: Size, pyr_scale: f64, levels: u32) -> Vec<Level> {
     let mut result = Vec::new();
     let mut scale = 1.0;

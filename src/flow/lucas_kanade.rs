@@ -1,9 +1,10 @@
 //! Dense pyramidal Lucas–Kanade flow.
 //!
-//! B. Lucas and T. Kanade, An iterative image registration technique with an application to stereo vision, IJCAI 1981; the
-//! pyramid and the warping as J.-Y. Bouguet, Pyramidal implementation of the Lucas Kanade feature tracker, 2001, for every
-//! pixel. Each iteration warps the second picture by the flow so far and adds what the averaged gradients of what is left
-//! tell. The window is a Gaussian: increments over a box make waves a little shorter than itself grow.
+//! B. Lucas and T. Kanade, An iterative image registration technique with an application to stereo vision, IJCAI 1981;
+//! pyramid and warping after J.-Y. Bouguet, Pyramidal implementation of the Lucas Kanade feature tracker, 2001, here
+//! for every pixel. Each iteration warps the second image by the flow so far and adds the displacement that solves the
+//! equations of the remaining difference. The window is a Gaussian: with increments, a box amplifies waves a little
+//! shorter than itself.
 
 use super::coarse_to_fine::{CoarseToFine, Iteration};
 use super::parameter::{self, Choice, Parameter, Parameters, read, within};
@@ -18,9 +19,9 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LucasKanade {
-    /// A level's size against the next finer one, in (0, 1).
+    /// The size of a level relative to the next finer one, in (0, 1).
     pub pyr_scale: f64,
-    /// Levels beside the full picture, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
+    /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
     pub levels: u32,
     /// Width of the Gaussian window in pixels, 2 to 1024; its standard deviation is `0.3 · (winsize / 2)` pixels.
     pub winsize: u32,
@@ -137,10 +138,10 @@ struct LucasKanadeStages {
     radius: u32,
     pyramid: Pyramid,
     coarse_to_fine: CoarseToFine,
-    /// Of each level, finest first, for both slots.
+    /// For each level, finest first, the buffers of both slots.
     images: Vec<[BufId; 2]>,
     weighted: Option<Weighted>,
-    /// A certainty that is 1 everywhere, where pictures come without one.
+    /// A certainty of 1 everywhere, for images without one.
     known: Option<BufId>,
     warped: BufId,
     shown: BufId,
@@ -151,12 +152,12 @@ struct LucasKanadeStages {
     confidence: Option<BufId>,
 }
 
-/// The buffers that only a certainty needs.
+/// The buffers that are needed only with a certainty.
 struct Weighted {
-    /// The picture times its certainty, and the certainty within its range.
+    /// The image times its certainty, and the certainty clamped to its range.
     full: [BufId; 2],
     level: BufId,
-    /// Of each level, finest first, for both slots.
+    /// For each level, finest first, the buffers of both slots.
     certainties: Vec<[BufId; 2]>,
 }
 
@@ -166,7 +167,7 @@ impl LucasKanadeStages {
         of_level.or(self.known).unwrap_or_else(|| unreachable!("there is one of the two"))
     }
 
-    /// The averaged equations of a level in `columns`, but for the rows: with the second picture warped by a flow.
+    /// The equations of a level with the second image warped by a flow, averaged along columns only, in `columns`.
     fn equations(&self, steps: &mut Vec<Step>, k: usize, label: &str, slots: [usize; 2], flow: BufId, residual: u32) {
         let size = self.levels[k].size;
         let (width, height) = (size.width, size.height);

@@ -1,8 +1,8 @@
-//! Estimators of optical flow. Each one builds steps of a [`Plan`](crate::plan::Plan) and reads like its paper.
+//! Estimators of optical flow. Each one builds the steps of a [`Plan`](crate::plan::Plan) and follows its paper.
 //!
-//! To add one: `src/flow/foo.rs` with a type that is an [`Estimator`], its kernels, and the word `foo` with the type's name
-//! in the list below. From the list follow its value of [`Algorithm`], its name and its parameters' flags on the command
-//! line and in JSON, its tests of determinism, sizes and streams, and its place in `crosscheck` and `bench`.
+//! To add one: `src/flow/foo.rs` with a type that is an [`Estimator`], its kernels, and the word `foo` with the type's
+//! name in the list below. The list generates its variant of [`Algorithm`], its name and its parameters' flags on the
+//! command line and in JSON, its tests of determinism, sizes and streams, and its place in `crosscheck` and `bench`.
 
 mod coarse_to_fine;
 mod estimator;
@@ -47,13 +47,13 @@ macro_rules! estimators {
         })*
 
         impl Algorithm {
-            /// The names of all methods, each with what it is, in one line.
+            /// The names of all methods, each with a one-line description.
             pub const ALL: &'static [Choice] = &[$((<$Type>::NAME, <$Type>::ABOUT)),*];
 
             /// The method of this name with the values of a preset.
             ///
             /// # Errors
-            /// [`Error::Parameter`] for a method or a preset that is not there.
+            /// [`Error::Parameter`] for an unknown method or preset.
             pub fn named(name: &str, preset: &str) -> Result<Self> {
                 $(if name == <$Type>::NAME {
                     return match <$Type>::preset(preset) {
@@ -79,7 +79,7 @@ macro_rules! estimators {
                 match self { $(Self::$Type(_) => <$Type>::PRESETS),* }
             }
 
-            /// The value of a parameter as text; none if the method has none of this name.
+            /// The value of a parameter as text; None if the method has no parameter of this name.
             pub fn get(&self, name: &str) -> Option<String> {
                 match self { $(Self::$Type(parameters) => parameters.get(name)),* }
             }
@@ -87,7 +87,7 @@ macro_rules! estimators {
             /// Sets a parameter from text.
             ///
             /// # Errors
-            /// [`Error::Parameter`] for a parameter that is not there, and for text that is not one of its values.
+            /// [`Error::Parameter`] for an unknown parameter, and for text that is not one of its values.
             pub fn set(&mut self, name: &str, value: &str) -> Result<()> {
                 match self { $(Self::$Type(parameters) => parameters.set(name, value)),* }
             }
@@ -105,7 +105,7 @@ macro_rules! estimators {
             }
         }
 
-        /// Calls a macro with the modules and types of all estimators, so that tests are made from the one list.
+        /// Calls a macro with the modules and types of all estimators, so that tests are generated from this list.
         #[macro_export]
         macro_rules! for_each_estimator {
             ($d call:ident) => { $d call! { $($module: $Type),* } };

@@ -1,4 +1,4 @@
-//! The parameters of an estimator by their names, for command lines and records.
+//! The parameters of an estimator by name, for command lines and records.
 
 use std::fmt::Display;
 use std::str::FromStr;
@@ -8,13 +8,13 @@ use crate::error::{Error, Result};
 /// A parameter of an estimator.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Its name, as of the field.
+    /// The name, as in the struct.
     pub name: &'static str,
-    /// What stands for its value in a help text, for example `PX`.
+    /// The placeholder of its value in a help text, for example `PX`.
     pub value_name: &'static str,
-    /// What it is and its range, in one line.
+    /// The meaning and the range, in one line.
     pub help: &'static str,
-    /// The values to choose from, each with its meaning; empty for numbers.
+    /// The possible values, each with its meaning; empty for numbers.
     pub choices: &'static [Choice],
 }
 
@@ -25,35 +25,35 @@ pub type Choice = (&'static str, &'static str);
 pub trait Parameters: Sized + Default {
     /// The name of the method on the command line and in JSON.
     const NAME: &'static str;
-    /// What the method is, in one line.
+    /// A one-line description of the method.
     const ABOUT: &'static str;
-    /// All parameters, in the order in which a help text lists them.
+    /// All parameters, in the order of a help text.
     const LIST: &'static [Parameter];
-    /// Named sets of values, each with its meaning; one of them is `default`.
+    /// The presets: named sets of values, each with its meaning; one of them is `default`.
     const PRESETS: &'static [Choice];
 
-    /// The values of a preset; none if there is none of this name.
+    /// The values of a preset; None for an unknown name.
     fn preset(name: &str) -> Option<Self>;
 
-    /// The value of a parameter as text; none if there is none of this name.
+    /// The value of a parameter as text; None for an unknown name.
     fn get(&self, name: &str) -> Option<String>;
 
-    /// Sets a parameter from text. Ranges are left to [`Estimator::validate`](super::Estimator::validate).
+    /// Sets a parameter from text. It does not check ranges: [`Estimator::validate`](super::Estimator::validate) does.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter that is not there, and for text that is not one of its values.
+    /// [`Error::Parameter`] for an unknown parameter, and for text that is not one of its values.
     fn set(&mut self, name: &str, value: &str) -> Result<()>;
 }
 
 /// Reads a parameter's value from text.
 ///
 /// # Errors
-/// [`Error::Parameter`] with the parameter's help where the text is no such value.
+/// [`Error::Parameter`] with the parameter's help if the text is not a value of it.
 pub(crate) fn read<T: FromStr>(list: &'static [Parameter], name: &str, value: &str) -> Result<T> {
     value.trim().parse().map_err(|_| wrong(list, name, value))
 }
 
-/// The error of a value that cannot be read, or of a parameter that is not there.
+/// The error of a value that cannot be parsed, or of an unknown parameter.
 pub(crate) fn wrong(list: &'static [Parameter], name: &str, value: &str) -> Error {
     match list.iter().find(|parameter| parameter.name == name) {
         None => {
@@ -75,12 +75,12 @@ fn lower_first(text: &str) -> String {
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// Values to choose from: the name of each and what it stands for.
+/// Possible values: the name and the value of each.
 pub(crate) fn choice_name<T: PartialEq + Copy>(choices: &[(&'static str, T)], value: T) -> &'static str {
     choices.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
 }
 
-/// The value that a name stands for.
+/// The value of a name.
 pub(crate) fn choose<T: Copy>(
     list: &'static [Parameter],
     choices: &[(&'static str, T)],
@@ -91,7 +91,7 @@ pub(crate) fn choose<T: Copy>(
     known.map(|(_, value)| *value).ok_or_else(|| wrong(list, name, value))
 }
 
-/// Checks that a number is within a range, limits included; NaN is not.
+/// Checks that a number is within a range, limits included. NaN is outside.
 pub(crate) fn within<T: PartialOrd + Display>(name: &'static str, value: T, low: T, high: T) -> Result<()> {
     if value >= low && value <= high {
         return Ok(());

@@ -1,20 +1,20 @@
-//! The pyramid of a picture: each level is smoothed and read from the full picture.
+//! The image pyramid: each level is smoothed and sampled from the full image.
 
 use super::Level;
 use crate::frame::Size;
 use crate::kernels::{binomial, resample_x, resample_y, tables};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
-/// The buffers that reduce a full picture to the levels of a pyramid.
+/// The buffers that reduce a full image to the levels of a pyramid.
 pub(super) struct Pyramid {
     size: Size,
-    /// Room for a picture that is reduced in height alone.
+    /// The image reduced in height only.
     columns: BufId,
-    /// Of each level but the finest.
+    /// For each level but the finest.
     reductions: Vec<Reduction>,
 }
 
-/// How the full picture is read on one level.
+/// The tables for sampling the full image on one level.
 struct Reduction {
     level: Level,
     gauss: BufId,
@@ -23,7 +23,7 @@ struct Reduction {
 }
 
 impl Pyramid {
-    /// For pictures of this size and these levels, finest first.
+    /// Allocates the buffers for images of this size and these levels, finest first.
     pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level]) -> Self {
         let columns = bufs.computed("smoothed columns", Shape::planar(size, 1));
         let reduction = |(k, &level): (usize, &Level)| Reduction {
@@ -36,7 +36,7 @@ impl Pyramid {
         Self { size, columns, reductions: levels.iter().enumerate().skip(1).map(reduction).collect() }
     }
 
-    /// A full picture as level `k` sees it, in `image`.
+    /// The steps that reduce a full image to level `k`, in `image`.
     pub(super) fn reduce(&self, steps: &mut Vec<Step>, k: usize, full: BufId, image: BufId) {
         let label = format!("level {k}");
         let Some(reduction) = k.checked_sub(1).map(|k| &self.reductions[k]) else {

@@ -1,4 +1,4 @@
-//! Finding an adapter, and saying which one it is.
+//! Adapters: finding, choosing and describing them.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -8,37 +8,37 @@ use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Instance};
 use super::tuning::{AdapterClass, Tuning};
 use crate::error::{Error, Result};
 
-/// Which adapter to take, and how to use it.
+/// The choice of an adapter, and its options.
 #[derive(Clone, Debug, Default)]
 pub struct GpuOptions {
-    /// Part of the adapter's name, upper or lower case; none for the best one there is.
+    /// Part of the adapter's name, upper or lower case; None for the best adapter there is.
     pub adapter: Option<String>,
     /// Whether an adapter that computes on the CPU, such as lavapipe, may be taken without being named.
     ///
     /// Off by default: such an adapter is slower than the CPU executor.
     pub allow_software: bool,
-    /// A folder that keeps the driver's compiled code from one process to the next, where the adapter can
-    /// (`Features::PIPELINE_CACHE`); it is made when it is needed. None, the default, writes nothing. Native only.
+    /// A folder that keeps the driver's compiled code from one process to the next, if the adapter supports it
+    /// (`Features::PIPELINE_CACHE`); it is created when it is needed. None, the default, writes nothing. Native only.
     ///
-    /// It must be a folder that only the user can write into: drivers confidence what they once have compiled. A file
-    /// in it that is damaged or of another driver is replaced, and a folder that cannot be written into is no error.
+    /// It must be a folder that only the user can write to: drivers trust what they have compiled. A file in it that is
+    /// damaged or belongs to another driver is replaced. A folder that cannot be written to is no error.
     pub pipeline_cache: Option<PathBuf>,
-    /// Which variant of each kernel the adapter runs: by default each one's first.
+    /// The variant of each kernel that the adapter runs: by default each kernel's first.
     pub tuning: Tuning,
 }
 
-/// What is known of an adapter.
+/// The description of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterName {
-    /// The device's name, as its driver gives it.
+    /// The device's name, as its driver reports it.
     pub name: String,
     /// The driver's name and version.
     pub driver: String,
-    /// The interface by which it is reached, for example `Vulkan`.
+    /// The graphics API, for example `Vulkan`.
     pub backend: String,
     /// Whether it computes on the CPU.
     pub software: bool,
-    /// The class by which its kernels are tuned.
+    /// The class for which its kernels are tuned.
     pub class: AdapterClass,
 }
 
@@ -62,7 +62,7 @@ impl fmt::Display for AdapterName {
     }
 }
 
-/// Every adapter of this machine.
+/// All adapters of this machine.
 pub(super) async fn list() -> Vec<Adapter> {
     instance().enumerate_adapters(Backends::all()).await
 }
@@ -70,16 +70,16 @@ pub(super) async fn list() -> Vec<Adapter> {
 fn instance() -> Instance {
     Instance::new(wgpu::InstanceDescriptor {
         backends: Backends::all(),
-        // Validation layers are for those who write this crate, and are not everywhere.
+        // Validation layers are for development of this crate, and are not installed everywhere.
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
 }
 
-/// Chooses an adapter: one that is named, or the fastest kind there is.
+/// Chooses an adapter: the named one, or one of the fastest kind there is.
 ///
 /// # Errors
-/// [`Error::NoAdapter`], with what is there and what to do.
+/// [`Error::NoAdapter`], which lists the adapters found and says what to do.
 pub(super) async fn choose(options: &GpuOptions) -> Result<Adapter> {
     let mut found = list().await;
     let names: Vec<String> =

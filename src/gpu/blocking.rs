@@ -1,4 +1,4 @@
-//! The blocking faces of the asynchronous calls. Native only: a browser lets no thread wait, and its devices poll
+//! Blocking wrappers of the asynchronous calls. Native only: in a browser no thread may wait, and devices poll
 //! themselves.
 
 use std::future::Future;
@@ -14,21 +14,21 @@ use crate::error::Result;
 use crate::kernel::Kernel;
 use crate::kernels::compare::POISON;
 
-/// How long one thread keeps others from polling.
+/// The longest time for which one thread keeps others from polling.
 const SLICE: Duration = Duration::from_millis(5);
 
-/// Waits for a future that needs no device to be polled, such as that of an error scope.
+/// Waits for a future that needs no polling of a device, such as that of an error scope.
 pub(crate) fn block_on<F: Future>(future: F) -> F::Output {
     pollster::block_on(future)
 }
 
-/// Every adapter of this machine. Native only: it blocks.
+/// All adapters of this machine. Native only: it blocks.
 pub fn adapters() -> Vec<Adapter> {
     block_on(adapter::list())
 }
 
 impl Gpu {
-    /// Opens a device. Native only: it blocks. [`Gpu::open`] does the same and does not.
+    /// Opens a device. Native only: it blocks. [`Gpu::open`] is the asynchronous form.
     ///
     /// # Errors
     /// As [`Gpu::open`].
@@ -36,8 +36,8 @@ impl Gpu {
         block_on(Self::open(options))
     }
 
-    /// Opens a device like this one anew, after a loss. Native only: it blocks. [`Gpu::open_again`] does the same and does
-    /// not.
+    /// Reopens a device like this one, after a loss. Native only: it blocks. [`Gpu::open_again`] is the asynchronous
+    /// form.
     ///
     /// # Errors
     /// As [`Gpu::open_again`].
@@ -45,7 +45,7 @@ impl Gpu {
         block_on(self.open_again())
     }
 
-    /// Waits until everything submitted is done. Native only: it blocks. [`Gpu::finished`] gives a future of the same.
+    /// Waits until everything submitted is done. Native only: it blocks. [`Gpu::finished`] is the asynchronous form.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost) if the device was lost.
@@ -53,7 +53,7 @@ impl Gpu {
         self.poll(PollType::wait_indefinitely()).map(|_| ())
     }
 
-    /// Waits for a future, and polls the device meanwhile.
+    /// Waits for a future and polls the device meanwhile.
     pub(crate) fn wait_for<T>(&self, future: impl Future<Output = Result<T>>) -> Result<T> {
         let mut future = pin!(future);
         let mut context = Context::from_waker(Waker::noop());
@@ -65,7 +65,7 @@ impl Gpu {
         }
     }
 
-    /// Polls the device. True if what was waited for is done, or if nothing submitted is left to do.
+    /// Polls the device. Returns true if the awaited submission is done, or if no submission is left.
     pub(crate) fn poll(&self, kind: PollType) -> Result<bool> {
         let PollType::Wait { submission_index, timeout } = kind else {
             return self.poll_once(kind);
@@ -85,9 +85,10 @@ impl Gpu {
     }
 
     fn poll_once(&self, kind: PollType) -> Result<bool> {
-        // wgpu asserts that nobody else empties the queue while it polls: one thread at a time, for a slice of time.
+        // wgpu asserts that no other thread empties the queue while it polls: so one thread at a time, for a limited
+        // time.
         let alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // It also panics where the driver reports a loss or is out of memory.
+        // It also panics if the driver reports a loss or is out of memory.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(kind)));
         drop(alone);
         match polled {
@@ -103,8 +104,8 @@ impl Gpu {
 
     /// Runs a kernel once, alone, on fresh buffers whose outputs are filled with [`POISON`].
     ///
-    /// `inputs` are the kernel's, `outputs` the lengths of its results, and columns and rows what is computed. For tests
-    /// and comparisons. Native only: it blocks.
+    /// `inputs` are the kernel's input buffers, `outputs` the lengths of its outputs in `f32` values; columns and rows
+    /// are the size of the computed image. For tests and comparisons. Native only: it blocks.
     ///
     /// # Errors
     /// [`Error::Kernel`](crate::Error::Kernel) if the shader does not fit the kernel,

@@ -16,12 +16,12 @@ const MAGIC: &[u8; 8] = b"VSPIPE01";
 
 /// A pipeline cache, and the file that keeps it from one process to the next.
 ///
-/// The cache is a help and never an obstacle: a file that cannot be read, is damaged or is not ours is taken for none and
-/// replaced; one that cannot be written is not written. Of two processes that save at once the last one's file stays.
+/// The cache never causes a failure: a file that cannot be read, is damaged or is not ours is ignored and replaced; one
+/// that cannot be written is not written. If two processes save concurrently, the last one's file stays.
 pub(super) struct DiskCache {
     cache: PipelineCache,
     file: PathBuf,
-    /// The hash of what the file holds; none if it holds nothing of use.
+    /// The hash of the file's content; None if it has no usable content.
     saved: Mutex<Option<u64>>,
 }
 
@@ -45,7 +45,7 @@ impl DiskCache {
         &self.cache
     }
 
-    /// Writes the file, if it does not hold the same already.
+    /// Writes the file, unless its content is already the same.
     pub(super) fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
         let mut saved = self.saved.lock().unwrap_or_else(PoisonError::into_inner);
@@ -66,16 +66,16 @@ impl DiskCache {
     }
 }
 
-/// Makes a pipeline cache of what an earlier one has written, or an empty one. None if wgpu will not.
+/// Creates a pipeline cache from the data of an earlier one, or an empty one. None if wgpu refuses.
 fn create(device: &Device, data: Option<&[u8]>) -> Option<PipelineCache> {
     let filters = [ErrorFilter::OutOfMemory, ErrorFilter::Validation];
     let [memory, validation] = filters.map(|filter| device.push_error_scope(filter));
     #[allow(unsafe_code, reason = "create_pipeline_cache is unsafe")]
-    // SAFETY: `data` must come from `PipelineCache::get_data`. It comes from a file that `save` has written: nothing else
-    // writes our magic number followed by the hash of the rest, and damage on the way would show in the hash. wgpu compares
-    // the header that it has put before the driver's data with the adapter, the driver's version and the pointers' size, and
-    // with `fallback` leaves data of another one alone. Only a file that was forged on purpose passes all that. Who can
-    // write into the folder can do that; so it must be the user's own, as the documentation of
+    // SAFETY: `data` must come from `PipelineCache::get_data`. It comes from a file that `save` has written: nothing
+    // else writes our magic number followed by the hash of the rest, and damage on the way would show in the hash. wgpu
+    // compares the header that it has put before the driver's data with the adapter, the driver's version and the
+    // pointers' size, and with `fallback` leaves data of another one alone. Only a file that was forged on purpose
+    // passes all that. Who can write into the folder can do that; so it must be the user's own, as the documentation of
     // `GpuOptions::pipeline_cache` says, and whoever can write into the user's own folders can act as the user anyway.
     let cache = unsafe {
         device.create_pipeline_cache(&PipelineCacheDescriptor {
@@ -88,7 +88,7 @@ fn create(device: &Device, data: Option<&[u8]>) -> Option<PipelineCache> {
     errors.iter().all(Option::is_none).then_some(cache)
 }
 
-/// What a file holds: the magic number, the hash of the data, the data.
+/// The content of a file: the magic number, the hash of the data, the data.
 fn seal(data: &[u8]) -> Vec<u8> {
     [MAGIC, &hash(data).to_le_bytes(), data].concat()
 }
@@ -99,7 +99,7 @@ fn unseal(bytes: &[u8]) -> Option<&[u8]> {
     (hash(data) == u64::from_le_bytes(*expected)).then_some(data)
 }
 
-/// A hash of the data. That of another version of Rust may differ: then the file is taken for damaged and replaced.
+/// A hash of the data. Another version of Rust may hash differently: then the file counts as damaged and is replaced.
 fn hash(data: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     hasher.write(data);

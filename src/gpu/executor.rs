@@ -1,4 +1,4 @@
-//! A plan's buffers, pipelines and bind groups on a device, made once and replayed frame by frame.
+//! A plan's buffers, pipelines and bind groups on a device, created once and replayed frame by frame.
 
 use std::collections::HashMap;
 
@@ -61,8 +61,8 @@ impl Pipeline {
 }
 
 impl GpuExecutor {
-    /// Makes the plan's buffers, pipelines and bind groups, and has the device run what is computed once. Native only: it
-    /// blocks. [`GpuExecutor::open`] does the same and does not.
+    /// Creates the plan's buffers, pipelines and bind groups, and runs the setup steps. Native only: it blocks.
+    /// [`GpuExecutor::open`] is the asynchronous form.
     ///
     /// # Errors
     /// As [`GpuExecutor::open`].
@@ -70,7 +70,7 @@ impl GpuExecutor {
         blocking::block_on(Self::open(gpu, plan))
     }
 
-    /// Makes the plan's buffers, pipelines and bind groups, and has the device run what is computed once.
+    /// Creates the plan's buffers, pipelines and bind groups, and runs the setup steps.
     ///
     /// # Errors
     /// [`Error::TooLarge`] if a buffer is over the device's limits, [`Error::Kernel`] if a shader does not fit its
@@ -109,17 +109,17 @@ impl GpuExecutor {
         &self.bufs[id.index()]
     }
 
-    /// Records what is to be computed of a frame alone.
+    /// Records the steps of a frame alone.
     pub fn record_ingest(&self, pass: &mut ComputePass<'_>, parity: usize) {
         self.ingest[parity].iter().for_each(|dispatch| dispatch.record(pass));
     }
 
-    /// Records what is to be computed of a frame and the one before.
+    /// Records the steps of a frame and the previous one.
     pub fn record_pair(&self, pass: &mut ComputePass<'_>, parity: usize) {
         self.pair[parity].iter().for_each(|dispatch| dispatch.record(pass));
     }
 
-    /// Records a frame, with a query of the clock before the first step and after each one if queries are given.
+    /// Records a frame's steps. If queries are given, the clock is read before the first step and after each step.
     pub(crate) fn record_frame(
         &self,
         pass: &mut ComputePass<'_>,
@@ -142,7 +142,7 @@ impl GpuExecutor {
         }
     }
 
-    /// Writes a buffer from the host, at once. For tests and comparisons: a stream uses mapped buffers.
+    /// Writes `values` to the beginning of a buffer. For tests and comparisons: a stream uses mapped buffers.
     pub fn write(&self, id: BufId, values: &[f32]) {
         self.gpu.queue.write_buffer(self.buf(id), 0, bytemuck::cast_slice(values));
     }
@@ -155,7 +155,7 @@ impl GpuExecutor {
         self.gpu.wait_for(self.fetch(id, len))
     }
 
-    /// Reads the first `len` values of a buffer. As for [`Gpu::finished`], somebody must poll the device.
+    /// Reads the first `len` values of a buffer. As with [`Gpu::finished`], something must poll the device.
     ///
     /// # Errors
     /// [`Error::DeviceLost`] if the device was lost.
@@ -163,7 +163,7 @@ impl GpuExecutor {
         read(&self.gpu, self.buf(id), len).await
     }
 
-    /// Runs one step of the plan's `ingest` and `pair` list and waits for it. For comparisons. Native only: it blocks.
+    /// Runs one step of [`Plan::steps`] and waits for it. For comparisons. Native only: it blocks.
     ///
     /// # Errors
     /// [`Error::DeviceLost`] if the device was lost.
@@ -245,7 +245,7 @@ fn check_limits(gpu: &Gpu, plan: &Plan) -> Result<()> {
     }
 }
 
-/// A buffer that shaders may bind as storage or as a table: then it ends with zeros.
+/// A buffer that shaders may bind as storage or as a table; as a table it ends with zeros.
 fn constant(gpu: &Gpu, label: &str, values: &[f32]) -> Buffer {
     let mut padded = values.to_vec();
     padded.resize(values.len().max(reflect::TABLE), 0.0);
@@ -275,7 +275,7 @@ async fn read(gpu: &Gpu, buffer: &Buffer, len: usize) -> Result<Vec<f32>> {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &target, 0, size);
     gpu.submit(encoder);
-    // Whether mapping worked shows when the range is asked for.
+    // Whether the mapping succeeded shows when the range is requested.
     target.map_async(wgpu::MapMode::Read, .., |_| {});
     gpu.finished().await?;
     let range = target.get_mapped_range(..).map_err(|error| gpu.lost_error(error.to_string()))?;

@@ -1,4 +1,4 @@
-//! The end of what was submitted, as a future.
+//! The completion of all submissions, as a future.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 use super::Gpu;
 use crate::error::Result;
 
-/// A future that is ready when everything is done that had been submitted when it was made. Of [`Gpu::finished`].
+/// The future of [`Gpu::finished`]: it is ready when everything that was submitted before its creation is done.
 #[must_use = "a future does nothing unless it is awaited"]
 pub struct Finished {
     gpu: Gpu,
@@ -25,7 +25,7 @@ impl Finished {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let state = Arc::<Mutex<State>>::default();
         let told = state.clone();
-        // Asking for the end submits what is pending, so it may not happen while another thread polls.
+        // Asking for completion submits pending work, so it must not happen while another thread polls.
         let _alone = gpu.polling.lock().unwrap_or_else(PoisonError::into_inner);
         gpu.queue.on_submitted_work_done(move || {
             let mut state = locked(&told);

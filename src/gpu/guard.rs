@@ -1,4 +1,4 @@
-//! What wgpu would panic about, as errors.
+//! Turns wgpu's panics into errors.
 
 use wgpu::ErrorFilter;
 
@@ -7,11 +7,11 @@ use crate::error::{Error, Result};
 use crate::plan::Plan;
 
 impl Gpu {
-    /// Makes what a plan needs on the device, and turns what wgpu would panic about into errors.
+    /// Runs `make`, which creates a plan's resources on the device, and turns wgpu's panics into errors.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`], [`Error::DeviceLost`], or [`Error::Kernel`] for what wgpu's validation refuses; and what
-    /// `make` returns.
+    /// [`Error::OutOfMemory`], [`Error::DeviceLost`], or [`Error::Kernel`] if wgpu's validation refuses something; and
+    /// the errors of `make`.
     pub(crate) fn guarded<T>(&self, plan: &Plan, make: impl FnOnce() -> Result<T>) -> Result<T> {
         let memory = self.device.push_error_scope(ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(ErrorFilter::Validation);

@@ -1,9 +1,9 @@
 //! The GPU executor: adapter, device, pipelines, and a plan's buffers on the device.
 //!
-//! What takes time is asynchronous inside: [`Gpu::open`], [`Gpu::finished`], [`GpuExecutor::open`]. The blocking calls
-//! ([`Gpu::new`], [`Gpu::finish`], [`GpuExecutor::new`]) are thin faces of these, and native only, as a browser lets no
-//! thread wait. Native only, too, are the pipelines on disk ([`GpuOptions::pipeline_cache`]) and compiling on several
-//! threads.
+//! Slow calls are asynchronous: [`Gpu::open`], [`Gpu::finished`], [`GpuExecutor::open`]. The blocking calls
+//! ([`Gpu::new`], [`Gpu::finish`], [`GpuExecutor::new`]) are thin wrappers of these, and native only, because in a
+//! browser no thread may wait. The pipelines on disk ([`GpuOptions::pipeline_cache`]) and compilation on several
+//! threads are native only, too.
 
 mod adapter;
 mod blocking;
@@ -30,7 +30,7 @@ use wgpu::{Device, Features, Limits, Queue};
 
 use crate::error::{Error, Result};
 
-/// A device to compute on, and the kernels that were compiled for it.
+/// A GPU device, and the kernels that are compiled for it.
 ///
 /// Cloning it is cheap and gives the same device with the same kernels.
 #[derive(Clone)]
@@ -42,7 +42,7 @@ pub struct Gpu {
     pipelines: Arc<Pipelines>,
     lost: Arc<Mutex<Option<String>>>,
     polling: Arc<Mutex<()>>,
-    /// How the device can be had again, if it is this crate's.
+    /// How the device can be reopened, if it is this crate's.
     options: Option<GpuOptions>,
 }
 
@@ -50,7 +50,7 @@ impl Gpu {
     /// Opens a device.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`] if none fits the options or the driver refuses, with the reason and what to do.
+    /// [`Error::NoAdapter`] if no adapter fits the options or the driver refuses, with the reason and what to do.
     pub async fn open(options: &GpuOptions) -> Result<Self> {
         let adapter = adapter::choose(options).await?;
         let name = AdapterName::new(&adapter.get_info());
@@ -86,7 +86,7 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Uses the caller's device. It is never rebuilt by this crate.
+    /// Uses the caller's device. This crate never reopens it.
     pub fn from_device(device: Device, queue: Queue) -> Self {
         let name = AdapterName::new(&device.adapter_info());
         Self::with_name(device, queue, name)
@@ -113,7 +113,7 @@ impl Gpu {
         }
     }
 
-    /// The same device with another tuning. Kernels that are compiled already are not compiled again.
+    /// The same device with another tuning. Kernels that are already compiled are not compiled again.
     #[must_use]
     pub fn with_tuning(&self, tuning: Tuning) -> Self {
         Self { tuning: Arc::new(tuning), ..self.clone() }
@@ -124,12 +124,12 @@ impl Gpu {
         &self.tuning
     }
 
-    /// How many pipelines this device keeps compiled: one for each kernel and set of constants that was used.
+    /// The number of pipelines that this device keeps: one per kernel and set of constants that was used.
     pub fn pipelines(&self) -> usize {
         self.pipelines.len()
     }
 
-    /// Opens a device like this one anew, after a loss.
+    /// Reopens a device like this one, after a loss.
     ///
     /// # Errors
     /// [`Error::DeviceLost`] if the device was the caller's, else as [`Gpu::open`].
@@ -156,17 +156,17 @@ impl Gpu {
         self.device.features()
     }
 
-    /// The device, for callers who share it.
+    /// The device, for callers that share it.
     pub fn device(&self) -> &Device {
         &self.device
     }
 
-    /// Its queue, for callers who share it.
+    /// Its queue, for callers that share it.
     pub fn queue(&self) -> &Queue {
         &self.queue
     }
 
-    /// Why the device is gone, if it is.
+    /// The reason of the device's loss; None if it is not lost.
     pub fn lost(&self) -> Option<String> {
         self.lost.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
@@ -176,18 +176,18 @@ impl Gpu {
         Error::DeviceLost { adapter: self.name.to_string(), reason }
     }
 
-    /// A future that is ready when everything is done that has been submitted so far.
+    /// A future that is ready when everything submitted so far is done.
     ///
-    /// In a browser it becomes ready by itself; elsewhere it needs somebody to poll the device, as [`Gpu::finish`] and the
+    /// In a browser it becomes ready by itself; elsewhere something must poll the device, as [`Gpu::finish`] and the
     /// engine do. Its error is [`Error::DeviceLost`], if the device was lost.
     pub fn finished(&self) -> Finished {
         Finished::new(self)
     }
 
-    /// Submits what was recorded.
+    /// Submits recorded commands.
     pub(crate) fn submit(&self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
         let commands = encoder.finish();
-        // A submission looks after finished mappings, as polling does.
+        // A submission handles finished mappings, as polling does.
         let _alone = self.polling.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         self.queue.submit([commands])
     }

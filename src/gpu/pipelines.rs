@@ -11,31 +11,31 @@ use super::{Gpu, blocking, reflect};
 use crate::error::{Error, Result};
 use crate::kernel::{Kernel, Layout, Variant};
 
-/// A kernel's pipeline, and how much a workgroup of it covers.
+/// A kernel's pipeline, and the area that a workgroup covers.
 #[derive(Clone)]
 pub(super) struct Pipeline {
     pub(super) pipeline: ComputePipeline,
     pub(super) shape: reflect::DispatchShape,
 }
 
-/// The pipelines of a device. They are kept as long as the device.
+/// The pipelines of a device, kept as long as the device.
 pub(super) struct Pipelines {
     compiled: Mutex<HashMap<Key, Pipeline>>,
     disk: Option<DiskCache>,
 }
 
-/// A kernel that is asked for.
+/// A requested kernel.
 type Wanted<'a> = (Key, &'a Kernel, &'static Variant);
 
-/// What a pipeline follows from. The name has no part in it: tests run mutated shaders under the kernel's name. The Rust
-/// side has: a shader that fits one kernel may be refused for another.
+/// The key of a pipeline. The kernel's name is not part of it: tests run mutated shaders under the kernel's name. The
+/// Rust side is: a shader that fits one kernel may be refused for another.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     source: &'static str,
     params: Layout,
     inputs: &'static [&'static str],
     outputs: &'static [&'static str],
-    /// Names and bits.
+    /// The constants' names and the bits of their values.
     constants: Vec<(&'static str, u64)>,
 }
 
@@ -56,13 +56,13 @@ impl Pipelines {
         self.lock().len()
     }
 
-    /// The pipelines of kernels, in their order. Those that have not been compiled yet are.
+    /// The pipelines of kernels, in the kernels' order. Missing ones are compiled.
     ///
-    /// Two threads that ask for the same new kernel at once may both compile it; the first result is kept.
+    /// Two threads that request the same new kernel concurrently may both compile it; the first result is kept.
     ///
     /// # Errors
-    /// [`Error::Kernel`] if a shader does not fit its kernel or does not compile, [`Error::DeviceLost`] if the device was
-    /// lost.
+    /// [`Error::Kernel`] if a shader does not fit its kernel or does not compile, [`Error::DeviceLost`] if the device
+    /// was lost.
     pub(super) async fn get(&self, gpu: &Gpu, kernels: &[&Kernel]) -> Result<Vec<Pipeline>> {
         let mut wanted = Vec::with_capacity(kernels.len());
         for &kernel in kernels {
@@ -70,8 +70,8 @@ impl Pipelines {
             wanted.push((Key::new(kernel, variant), kernel, variant));
         }
         let missing = self.missing(&wanted);
-        // The lock is not held meanwhile: a thread of rayon's that waits for others takes up other work, which may ask for
-        // it.
+        // The lock is not held meanwhile: a rayon thread that waits for others takes other work, which may need the
+        // lock.
         let new = self.compile_all(gpu, &missing).await?;
         if let Some(disk) = self.disk.as_ref().filter(|_| !missing.is_empty()) {
             disk.save();
@@ -83,7 +83,7 @@ impl Pipelines {
         Ok(wanted.iter().map(|(key, ..)| compiled[key].clone()).collect())
     }
 
-    /// Those that have not been compiled yet, each one once.
+    /// The kernels that are not compiled yet, each once.
     fn missing<'a>(&self, wanted: &'a [Wanted<'a>]) -> Vec<&'a Wanted<'a>> {
         let compiled = self.lock();
         let mut missing: Vec<&Wanted<'_>> = Vec::new();
@@ -95,7 +95,7 @@ impl Pipelines {
         missing
     }
 
-    /// Compiles kernels, on all threads of rayon's pool; where there are no threads, one after the other.
+    /// Compiles kernels on all threads of rayon's pool; without threads, one after the other.
     async fn compile_all(&self, gpu: &Gpu, kernels: &[&Wanted<'_>]) -> Result<Vec<Pipeline>> {
         if !cfg!(target_arch = "wasm32") && kernels.len() > 1 {
             let compile =
@@ -128,14 +128,14 @@ impl Pipelines {
         }
     }
 
-    /// Has the device compile a kernel. The future gives wgpu's error, if there was one.
+    /// Compiles a kernel on the device. The future returns wgpu's error, if there was one.
     fn create(
         &self,
         gpu: &Gpu,
         kernel: &Kernel,
         variant: &Variant,
     ) -> (ComputePipeline, impl Future<Output = Option<wgpu::Error>> + use<>) {
-        // A thread has error scopes of its own, so the caller's do not reach here; and a pipeline that is none must not be
+        // Each thread has its own error scopes, so the caller's do not apply here; and a failed pipeline must not be
         // kept.
         let filters = [ErrorFilter::OutOfMemory, ErrorFilter::Internal, ErrorFilter::Validation];
         let [memory, internal, validation] = filters.map(|filter| gpu.device.push_error_scope(filter));

@@ -1,4 +1,4 @@
-//! What naga reads from a kernel's shader, and what it must find there. No GPU is needed for any of it.
+//! Reflection: naga reads a kernel's shader and checks it against the kernel's Rust side. It needs no GPU.
 
 use std::borrow::Cow;
 
@@ -9,36 +9,36 @@ use naga::{AddressSpace, Expression, Function, GlobalVariable, Module, Statement
 use crate::error::{Error, Result};
 use crate::kernel::{Kernel, Variant};
 
-/// Invocations of a workgroup that every GPU allows.
+/// The number of invocations per workgroup that every GPU allows.
 const MAX_INVOCATIONS: u32 = 256;
-/// Storage buffers of a stage that every GPU allows.
+/// The number of storage buffers per stage that every GPU allows.
 pub(super) const MAX_STORAGE_BUFFERS: usize = 8;
-/// Values of a table: a uniform input, `array<vec4f, 1024>`, a quarter of what every GPU allows.
+/// The number of values in a table: a uniform input, `array<vec4f, 1024>`, a quarter of what every GPU allows.
 pub(super) const TABLE: usize = 4096;
 
-/// What the host needs to know of a shader.
+/// The properties of a shader that the host needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DispatchShape {
-    /// Invocations of a workgroup in x and y.
+    /// Invocations per workgroup in x and y.
     pub workgroup: [u32; 2],
-    /// Pixels of an invocation in x and y: the shader's constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be
+    /// Pixels per invocation in x and y: the shader's constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be
     /// `override` constants.
     pub span: [u32; 2],
-    /// Channels that lie side by side and are worked on as one row: the shader's constant `SIDE_BY_SIDE`, or 1.
+    /// Channels that lie side by side and are processed as one row: the shader's constant `SIDE_BY_SIDE`, or 1.
     pub side_by_side: u32,
-    /// Which inputs are tables, bit by bit.
+    /// Which inputs are tables: bit i for input i.
     pub tables: u8,
 }
 
 impl DispatchShape {
-    /// Workgroups for a picture of this many columns and rows.
+    /// The number of workgroups for an image of this many columns and rows.
     pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 3] {
         let count = |pixels: u32, axis: usize| pixels.div_ceil(self.workgroup[axis] * self.span[axis]);
         [count(columns * self.side_by_side, 0), count(rows, 1), 1]
     }
 }
 
-/// [`reflect_variant`] of the kernel's default, which keeps every value that stands in the shader.
+/// [`reflect_variant`] for the kernel's default variant, which keeps every value of the shader.
 ///
 /// # Errors
 /// As [`reflect_variant`].
@@ -46,14 +46,15 @@ pub fn reflect(kernel: &Kernel) -> Result<DispatchShape> {
     reflect_variant(kernel, &Variant::DEFAULT)
 }
 
-/// Parses and validates a kernel's shader, gives its `override` constants the variant's values, and compares it with the
-/// kernel's Rust side.
+/// Parses and validates a kernel's shader, sets its `override` constants to the variant's values, and compares it with
+/// the kernel's Rust side.
 ///
-/// Compared are the uniform struct (names, types, offsets, size), the bindings (names, order, kind, use), the workgroup
-/// (at most 256 invocations) and the loops (each one against a bound that the shader states).
+/// It compares the uniform struct (names, types, offsets, size), the bindings (names, order, kind, use), the workgroup
+/// (at most 256 invocations) and the loops (each must have a bound that the shader states).
 ///
 /// # Errors
-/// [`Error::Kernel`], with everything that was found wrong. A constant that the shader does not declare is wrong, too.
+/// [`Error::Kernel`], with every mismatch found. A constant of the variant that the shader does not declare is a
+/// mismatch, too.
 pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchShape> {
     let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
     let module = naga::front::wgsl::parse_str(kernel.source)
@@ -71,7 +72,7 @@ pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchSha
     let usage = info.get_entry_point(0);
     let tables = check_bindings(kernel, &module, |handle| !usage[handle].is_empty(), &mut problems);
 
-    // What an override has no part in is read from the module as it was parsed: a resolved one has lost what it never uses.
+    // Everything that no override affects is read from the parsed module: the resolved one has lost what it never uses.
     let resolved = resolve(&module, &info, variant).map_err(fail)?;
     let entry = &resolved.entry_points[0];
     let [x, y, z] = entry.workgroup_size;
@@ -123,7 +124,7 @@ fn resolve<'a>(
     Ok(resolved)
 }
 
-/// Holds the bindings against the kernel, and says which inputs are tables.
+/// Compares the bindings with the kernel, and returns which inputs are tables.
 fn check_bindings(
     kernel: &Kernel,
     module: &Module,
@@ -212,7 +213,7 @@ fn type_name(inner: &TypeInner) -> String {
     }
 }
 
-/// Every loop must begin by comparing with something whose bound the shader states: a constant, or `min(…, CONSTANT)`.
+/// Checks that every loop begins with a comparison whose bound the shader states: a constant, or `min(…, CONSTANT)`.
 fn check_loops(module: &Module, function: &Function, name: &str, problems: &mut Vec<String>) {
     let mut blocks = vec![&function.body];
     while let Some(block) = blocks.pop() {

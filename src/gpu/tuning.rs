@@ -1,4 +1,4 @@
-//! Which variant of each kernel an adapter runs.
+//! Tuning: the variant of each kernel that an adapter runs.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,11 +11,11 @@ use crate::kernel::{Kernel, Variant};
 /// The class of an adapter: kernels are tuned for each class, not for each product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum AdapterClass {
-    /// It computes on the CPU, such as lavapipe.
+    /// An adapter that computes on the CPU, such as lavapipe.
     Software,
-    /// A GPU beside the CPU cores of a desktop or laptop, in the same memory.
+    /// An integrated GPU of a desktop or laptop, which shares the CPU's memory.
     Integrated,
-    /// A GPU with memory of its own.
+    /// A discrete GPU, with memory of its own.
     Discrete,
     /// The GPU of a phone or a single-board computer, known by its maker.
     Mobile,
@@ -28,8 +28,8 @@ impl AdapterClass {
     pub const ALL: [Self; 5] = [Self::Software, Self::Integrated, Self::Discrete, Self::Mobile, Self::Other];
 
     pub(super) fn of(info: &AdapterInfo) -> Self {
-        /// PCI vendor numbers, and where a maker has none the numbers that Khronos gives, of GPUs that are only built
-        /// into systems on a chip: Imagination, Arm, Samsung, Broadcom, Qualcomm, Vivante, VeriSilicon.
+        /// PCI vendor numbers (or, for a maker without one, Khronos's numbers) of GPUs that exist only in systems on a
+        /// chip: Imagination, Arm, Samsung, Broadcom, Qualcomm, Vivante, VeriSilicon.
         const MOBILE: [u32; 7] = [0x1010, 0x13b5, 0x144d, 0x14e4, 0x5143, 0x1_0001, 0x1_0002];
         match info.device_type {
             DeviceType::Cpu => Self::Software,
@@ -54,12 +54,12 @@ impl fmt::Display for AdapterClass {
     }
 }
 
-/// Which [`Variant`] of each kernel the adapters of each class run.
+/// The [`Variant`] of each kernel for each class of adapters.
 ///
 /// The default tuning takes each kernel's first variant on every adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tuning {
-    /// From class and kernel to the variant, all by name: a mutated kernel of a test is tuned as the original.
+    /// From class and kernel to the variant, all by name: a test's mutated kernel is tuned as the original.
     chosen: BTreeMap<(AdapterClass, &'static str), &'static str>,
 }
 
@@ -77,7 +77,8 @@ impl Tuning {
     /// The variant of a kernel on the adapters of a class.
     ///
     /// # Errors
-    /// [`Error::Kernel`] if the kernel has no variants, or not the one that was chosen for a kernel of the same name.
+    /// [`Error::Kernel`] if the kernel has no variants, or lacks the variant that was chosen for a kernel of the same
+    /// name.
     pub fn variant(&self, class: AdapterClass, kernel: &Kernel) -> Result<&'static Variant> {
         match self.chosen.get(&(class, kernel.name)) {
             Some(name) => find(kernel, name),

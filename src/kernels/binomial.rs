@@ -1,4 +1,4 @@
-//! A picture smoothed by `[1 2 1]/4` in both directions, mirrored at the border: the finest level of the pyramid.
+//! Smooths an image by `[1 2 1]/4` in both directions, mirrored at the border: the finest level of the pyramid.
 
 use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
 use super::test_inputs::{Fill, gray_cases};
@@ -6,7 +6,7 @@ use crate::frame::Size;
 use crate::kernel::{Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -27,7 +27,7 @@ kernel!(
 );
 
 impl Params {
-    /// The parameters for a picture of this size.
+    /// The parameters for an image of this size.
     pub fn new(size: Size) -> Self {
         Self { width: size.width, height: size.height }
     }

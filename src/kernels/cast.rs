@@ -1,8 +1,9 @@
-//! What the four samples of each pixel meet first, of the surfaces that its tile can see.
+//! Ray casting: the first surface that each of a pixel's four samples hits, of those that its tile can see.
 //!
 //! A sample's number is 0 for the sky, and else 1 + 8 · surface + face: of a box twice the axis across the face and 1
-//! more on its positive side, of a cylinder 0 for the mantle, 1 and 2 for the lids, 0 else. A tile's surfaces come
-//! nearest first, boxes and then cylinders, so that one may stop at the first that is further away than all that was met.
+//! more on its positive side, of a cylinder 0 for the mantle, 1 and 2 for the lids, 0 else. A tile's surfaces are
+//! listed nearest first, boxes and then cylinders, so that the search may stop at the first that is further away than
+//! all hits.
 
 use super::parallel_rows::{Split, bands, dimensions};
 use super::surface_inputs::surface_inputs;
@@ -11,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and its tiles.
+    /// Shape of the image and its tiles.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -34,7 +35,7 @@ kernel!(
 
 const FAR: f32 = 1e30;
 
-/// Unit rays of one sample of neighbouring pixels, and what they have met.
+/// Unit rays of one sample of neighbouring pixels, and their hits so far.
 struct Sample {
     x: Lanes,
     y: Lanes,
@@ -92,11 +93,11 @@ fn sample(rays: &[[f32; RAY]], [right, down]: [f32; 2]) -> Sample {
     sample
 }
 
-/// Whether all that follow are as far away or further than what was met.
+/// Whether all surfaces that follow are as far away as the hits, or further.
 #[inline(always)]
 fn hidden(samples: &[Sample; 4], record: &[f32; SURFACE_LEN]) -> bool {
     let open = |lane: usize| samples.iter().any(|sample| sample.distance[lane] >= record[15]);
-    // Counted, as a sum of whole numbers is one of vectors.
+    // Counted, because a sum of whole numbers compiles to vectors.
     (0..LANES).map(|lane| u32::from(open(lane))).sum::<u32>() == 0
 }
 
@@ -173,7 +174,7 @@ fn cases(size: Size) -> Vec<Case> {
     }]
 }
 
-/// What the reference sees, for the cases of the kernel after this one.
+/// The reference's hits, for the cases of the next kernel.
 pub(super) fn cast(size: Size, tiles: usize, inputs: [&[f32]; 4]) -> Vec<f32> {
     let mut ids = vec![0.0; 4 * size.stride() * size.height as usize];
     let params = Params { width: size.width, height: size.height, tiles: tiles as u32 };

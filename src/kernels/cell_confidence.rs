@@ -1,7 +1,7 @@
-//! How far the flow of each cell can be trusted: [`confidence`](super::confidence) from samples, cell by cell.
+//! The confidence of each cell's flow: [`confidence`](super::confidence) from samples, cell by cell.
 //!
-//! A cell's samples stand in place of a window's pixels. The equations are made anew at the samples only, a sixteenth of
-//! what the whole plane costs where every fourth pixel of every fourth row is one.
+//! A cell's samples take the place of a window's pixels. The equations are set up again at the samples only: with every
+//! fourth pixel of every fourth row that costs a sixteenth of the whole plane.
 
 use super::confidence::confidence_of;
 use super::expansion_pair::{fours, squared};
@@ -11,7 +11,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the cells and of the picture.
+    /// Shape of the cells and of the image.
     struct Params {
         /// Cells in a row.
         columns: u32,
@@ -37,7 +37,7 @@ kernel!(
     tolerance: Tolerance {
         absolute: 1e-4,
         relative: 0.0, of_largest: 0.0,
-        reason: "as of confidence: the least eigenvalue is a difference, and keeps four digits where the eigenvalues are \
+        reason: "as in confidence: the least eigenvalue is a difference, and keeps four digits where the eigenvalues are \
                  in a ratio of some hundred, and the share of 1 is taken of its root",
     },
 );

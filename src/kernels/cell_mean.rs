@@ -1,5 +1,5 @@
-//! The mean of a plane over each cell's samples, each times its certainty: the confidence of a cell's flow from that of its
-//! pixels.
+//! The mean of a plane over each cell's samples, weighted by their certainty: the confidence of a cell's flow from that
+//! of its pixels.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};

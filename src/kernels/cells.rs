@@ -1,8 +1,8 @@
 //! The flow on the view sphere averaged over square cells.
 //!
-//! Neighbouring pixels' flows have their errors in common, over about a window's width: cells of that order hold all
-//! there is to know. A cell's place and rate are means over its samples, in the plane of the ideal pinhole at unit
-//! distance: of `m / m_z` for the midpoint bearing m, and of `(F − m F_z / m_z) / m_z` for the spherical flow F.
+//! The errors of neighbouring pixels' flow are correlated over about a window's width: cells of that order keep all
+//! information. A cell's place and rate are means over its samples, in the plane of the ideal pinhole at unit distance:
+//! of `m / m_z` for the midpoint bearing m, and of `(F − m F_z / m_z) / m_z` for the spherical flow F.
 
 use super::bearings::{Pinhole, rows};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -12,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the cells and of the picture, and the ideal pinhole that took it.
+    /// Shape of the cells and of the image, and the ideal pinhole that took it.
     struct Params {
         /// Cells in a row.
         columns: u32,
@@ -28,7 +28,7 @@ params! {
         step: u32,
         /// Pixels of a focal length, to the right and down.
         focal: [f32; 2],
-        /// Where the axis meets the picture.
+        /// Where the axis meets the image.
         centre: [f32; 2],
     }
 }
@@ -68,7 +68,7 @@ fn reference(
                         let d = [flow[2 * y * stride + x], flow[(2 * y + 1) * stride + x]];
                         let (seen, known) = pinhole.midpoint_flow(&motion, [x as f32, y as f32], d);
                         let (m, f) = (seen.midpoint, seen.flow);
-                        // What lies beside or behind the camera has no place in the pinhole's plane.
+                        // Directions beside or behind the camera have no place in the pinhole's plane.
                         if known && m[2] > 0.01 {
                             let w = certainty[y * stride + x];
                             let place = [m[0] / m[2], m[1] / m[2]];
@@ -109,11 +109,11 @@ fn cases(size: Size) -> Vec<Case> {
     each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * extent.stride()], extent, |fill| {
         let range = if fill == Fill::Extreme { [0.0, 1e12] } else { [-0.04 * width, 0.04 * width] };
         let mut certainty = planes(size, 1, fill, [0.1, 1.0], 4);
-        // A corner that is not there, as a mask leaves it.
+        // A corner without certainty, as a mask makes it.
         for row in certainty.chunks_exact_mut(size.stride()).take(20) {
             row.iter_mut().take(20).for_each(|c| *c = 0.0);
         }
-        // The kernels before keep certainties numbers.
+        // The previous kernels never make a certainty NaN.
         certainty.iter_mut().filter(|c| c.is_nan()).for_each(|c| *c = 0.5);
         vec![
             planes(size, 2, fill, range, 3),

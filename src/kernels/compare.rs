@@ -1,49 +1,49 @@
-//! Whether two results agree. Both sides of every kernel and both executors of a plan are held against each other here.
+//! Comparison of two results: of the two sides of a kernel, and of the two executors of a plan.
 
 use crate::kernel::Bound;
 use crate::quantile::nearest_rank;
 
-/// What outputs are filled with before a kernel runs: not a number, and recognisable, so that a value that was never
-/// written is found even where not-a-number is the right answer.
+/// The value that fills outputs before a kernel runs: a recognisable NaN, so that a value that was never written is
+/// found even where NaN is the right answer.
 pub const POISON: f32 = f32::from_bits(0x7fc0_dead);
 
-/// How far two results lie apart.
+/// The differences between two results.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// The largest difference; infinite where the two are not even of one kind.
+    /// The largest difference; infinite if one value is NaN or infinite and the other is not the same.
     pub max: f32,
     /// The 99.9th percentile (nearest rank).
     pub p999: f32,
     /// The mean.
     pub mean: f64,
-    /// Values compared.
+    /// Number of compared values.
     pub count: usize,
-    /// The largest share of its bound that a value takes up: 1 is the bound itself.
+    /// The largest ratio of a difference to its bound: 1 is the bound itself.
     pub share: f32,
-    /// Values beyond the bound.
+    /// Number of values beyond their bound.
     pub breaches: usize,
-    /// The value that is furthest beyond the bound.
+    /// The value that is furthest beyond its bound.
     pub worst: Option<Breach>,
 }
 
-/// A value that lies beyond the bound.
+/// A value beyond its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breach {
-    /// Where in the buffer.
+    /// The index in the buffer.
     pub index: usize,
     /// The reference's value.
     pub expected: f32,
     /// The value found.
     pub found: f32,
-    /// How far apart they may lie.
+    /// The bound of their difference.
     pub bound: f32,
 }
 
-/// Holds `found` against `expected`, value by value.
+/// Compares `found` with `expected`, value by value.
 ///
-/// Values agree if they lie within the bound, or if both are the same infinity, or if neither is a number. A [`POISON`]
-/// agrees with nothing, and a value that only one side has is beyond every bound, as every value is beyond a bound that is
-/// not a number.
+/// Values agree if their difference is within the bound, or if both are the same infinity, or if both are NaN. A
+/// [`POISON`] agrees with nothing. A value that only one side has is beyond every bound, and every value is beyond a
+/// bound that is NaN.
 pub fn compare(expected: &[f32], found: &[f32], within: &Bound) -> Difference {
     let count = expected.len().max(found.len());
     let mut result = Difference { count, ..Difference::default() };

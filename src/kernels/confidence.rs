@@ -1,11 +1,11 @@
-//! How far the flow can be trusted: rows of the averaged evidence averaged in turn, and 1 against the standard error that
-//! they predict.
+//! The confidence of each pixel's flow: rows of the evidence, already averaged along columns, are averaged, and their
+//! predicted standard error is mapped to 0 to 1.
 //!
-//! The equations `A d = Δb` of a window's pixels determine d by least squares. What the found flow leaves of Δb is their
-//! noise, of variance r, and the least eigenvalue λ of the mean of AᵀA is the curvature in the direction that is known
-//! least; so the error there has a standard deviation of about `σ = √((r + 0.001) / λ)` pixels, where 0.001 stands for
-//! what rounding to whole gray levels leaves. The confidence is `0.25 / (0.25 + σ)`, times the share of the window that
-//! both frames show: 1 where the flow is certain, ½ at a quarter of a pixel, 0 where there is nothing to go by.
+//! The equations `A d = Δb` of a window's pixels determine d by least squares. The residual of Δb under the estimated
+//! flow is their noise, of variance r. The least eigenvalue λ of the mean of AᵀA is the curvature in the worst
+//! determined direction. So the error in that direction has a standard deviation of about `σ = √((r + 0.001) / λ)`
+//! pixels, where 0.001 stands for the rounding to whole gray levels. The confidence is `0.25 / (0.25 + σ)`, times the
+//! share of the window that both frames show: 1 where the flow is certain, ½ at σ = ¼ pixel, 0 without any texture.
 
 use super::solve::{average, equations};
 use super::test_inputs::{Fill, cases as each_fill};
@@ -39,8 +39,8 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], confidence: &mut [f32]
     });
 }
 
-/// The confidence of what has this evidence: the mean of AᵀA (xx, xy, yy), the mean square of what the flow leaves of Δb,
-/// and the share that both frames show.
+/// The confidence of evidence: the mean of AᵀA (xx, xy, yy), the mean square of the residual of Δb, and the share that
+/// both frames show.
 #[inline(always)]
 pub(super) fn confidence_of([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5]) -> f32 {
     let half_difference = 0.5 * (g_xx - g_yy);

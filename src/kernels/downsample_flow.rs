@@ -1,6 +1,6 @@
-//! A given flow reduced to a coarser level: the mean over each coarse pixel's area, scaled to the level's pixel size.
+//! Reduces a given flow to a coarser level: the mean over each coarse pixel's area, scaled to the level's pixel size.
 //!
-//! A displacement that is not finite or over 10⁹ is unknown and counts as none.
+//! A displacement that is not finite, or over 10⁹ in magnitude, is unknown and counts as zero.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::tables;
@@ -19,7 +19,7 @@ params! {
         in_width: u32,
         /// Rows of the given flow.
         in_height: u32,
-        /// What displacements are multiplied with.
+        /// The factor of the displacements.
         scale: f32,
     }
 }

@@ -1,11 +1,11 @@
-//! What the kernels that look at two frames' expansions share: reading the second one where the flow points.
+//! Shared by the kernels that read two frames' expansions: sampling the second one where the flow points.
 
 use super::parallel_rows::{Split, bands};
 
-/// Pixels worked on at a time: few enough that what is known of them stays in the nearest cache.
+/// Number of pixels per block: few enough that their values stay in the nearest cache.
 pub(super) const BLOCK: usize = 64;
 
-/// One value each of a block of pixels.
+/// One value per pixel of a block.
 pub(super) type Block = [f32; BLOCK];
 
 /// Values four by four: a pixel's b_x, b_y, A_xx, A_yy.
@@ -20,16 +20,16 @@ pub(super) struct ExpansionPair<'a> {
     pub(super) cross_term_0: &'a [f32],
     pub(super) quad_1: &'a [[f32; 4]],
     pub(super) cross_term_1: &'a [f32],
-    /// How certain the second expansion is; none for equally everywhere.
+    /// The certainty of the second expansion; None for 1 everywhere.
     pub(super) certainty_1: Option<&'a [f32]>,
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) stride: usize,
 }
 
-/// What the two frames say together at a block of pixels: A the mean of both, and b = −½ (b2 − b1).
+/// The common model of the two frames at a block of pixels: A the mean of both, and b = −½ (b2 − b1).
 ///
-/// Where the second frame has no expansion, the first one's stands alone and says nothing of motion: b2 = b1 = 0.
+/// Where the second frame has no expansion, the first one's is used alone and contains no motion: b2 = b1 = 0.
 #[repr(align(64))]
 pub(super) struct Model {
     pub(super) a_xx: Block,
@@ -39,12 +39,13 @@ pub(super) struct Model {
     pub(super) b_y: Block,
     /// 1 where the second frame has an expansion, else 0.
     pub(super) inside: Block,
-    /// How certain the second frame's expansion is there.
+    /// The certainty of the second frame's expansion there.
     pub(super) certainty_1: Block,
 }
 
-/// Where a block of pixels is read: the pixel above and to the left, and the bilinear weights of it and of its neighbours
-/// to the right, below, and below to the right. Aligned, for what is stored across two lines of the cache is slow to load.
+/// Where a block of pixels is read: the pixel above and to the left, and the bilinear weights of it and of its
+/// neighbours to the right, below, and below to the right. Aligned, because a value that spans two cache lines is slow
+/// to load.
 #[repr(align(64))]
 struct Places {
     first: [u32; BLOCK],
@@ -52,7 +53,7 @@ struct Places {
     inside: Block,
 }
 
-/// What is read there: the mean by the weights, and the four cross terms still apart.
+/// The values read there: the weighted mean, and the four cross terms separately.
 #[repr(align(64))]
 struct Gathered {
     quads: [[f32; 4]; BLOCK],
@@ -101,7 +102,7 @@ impl ExpansionPair<'_> {
         for i in 0..BLOCK {
             let x = ((x0 + i as u32) as f32).min(right) + u[i];
             let y = y + v[i];
-            // A place that is not a number is not inside either.
+            // NaN is not inside either.
             let inside = (x >= 0.0) & (y >= 0.0) & (x < right) & (y < bottom);
             let (x, y) = if inside { (x, y) } else { (0.0, 0.0) };
             let (left, above) = (x.floor(), y.floor());
@@ -116,19 +117,20 @@ impl ExpansionPair<'_> {
         places
     }
 
-    /// How far the row below is, and how many pixels have one and a right neighbour.
+    /// The distance of the row below, and the number of pixels with a row below and a right neighbour.
     #[inline(always)]
     fn neighbours(&self) -> (usize, usize) {
-        // In a picture one pixel high nothing is inside, so that any row will do. One pixel wide, it still has surplus.
+        // In an image one pixel high no place is inside, so that any row will do. An image one pixel wide still has
+        // surplus.
         let below = if self.height > 1 { self.stride } else { 0 };
         (below, self.stride * self.height - below - 1)
     }
 
-    /// The second frame's expansions there. Where there are not four pixels around a place they are without meaning.
+    /// The second frame's expansions there. They have no meaning at places without four pixels around them.
     #[inline(always)]
     fn second(&self, places: &Places) -> ([[f32; 4]; BLOCK], Block, Block) {
         let mut gathered = Gathered { quads: [[0.0; 4]; BLOCK], cross_terms: [[0.0; 4]; BLOCK] };
-        // All as long as each other, so that one look at an index serves them all.
+        // All slices have the same length, so that one bounds check serves all of them.
         let (below, count) = self.neighbours();
         let (q, t) = (self.quad_1, self.cross_term_1);
         let (q_a, q_b) = (&q[..count], &q[1..][..count]);
@@ -151,8 +153,8 @@ impl ExpansionPair<'_> {
         (gathered.quads, cross_terms, [1.0; BLOCK])
     }
 
-    /// The same by weight and certainty, so that pixels without an expansion do not draw the mean towards nothing; and how
-    /// certain it is.
+    /// The same weighted by certainty too, so that pixels without an expansion do not draw the mean towards zero; and
+    /// its certainty.
     #[inline(always)]
     fn weighted_second(&self, places: &Places, certainty: &[f32]) -> ([[f32; 4]; BLOCK], Block, Block) {
         let mut sums = [0.0; BLOCK];
@@ -194,17 +196,17 @@ pub(super) fn squared(a_xx: f32, a_xy: f32, a_yy: f32) -> [f32; 3] {
 pub(super) struct Stretch<'a> {
     /// The first one's place in a plane.
     pub(super) at: usize,
-    /// How many of the block's pixels there are. What is computed of the others is thrown away.
+    /// The number of valid pixels in the block. The results of the others are discarded.
     pub(super) count: usize,
     /// Their displacements so far.
     pub(super) u: &'a Block,
     pub(super) v: &'a Block,
-    /// How much they count for their nearness to the left and right border, and all of them for that to the other two.
+    /// Their weights near the left and right border, and the weight of the whole row near the upper and lower one.
     pub(super) weights_x: &'a Block,
     pub(super) weight_y: f32,
 }
 
-/// What is known of a block's own pixels.
+/// The first frame's values of a block.
 struct Ours<'a> {
     u: &'a Block,
     v: &'a Block,
@@ -212,8 +214,8 @@ struct Ours<'a> {
     cross_term_0: &'a Block,
 }
 
-/// A block of `values` from `at` on, of which `count` belong to it: the values themselves, or a copy in `room`, so that all
-/// that follows is done a whole block at a time.
+/// A block of `values` from `at` on, of which `count` belong to it: the values themselves, or a copy in `room`, so that
+/// everything after it processes whole blocks.
 #[inline(always)]
 fn whole_block<'a, T: Copy>(
     values: &'a [T],
@@ -231,8 +233,8 @@ fn whole_block<'a, T: Copy>(
 }
 
 impl ExpansionPair<'_> {
-    /// Fills a picture of five channels as `f` computes them of a block's model. What overflowed or was never a number
-    /// says nothing: zeros keep that from spreading.
+    /// Fills an image of five channels, which `f` computes from a block's model. Overflow and NaN become zeros, so that
+    /// they do not spread.
     #[inline(always)]
     pub(super) fn each_block(
         &self,
@@ -296,7 +298,7 @@ fn zero_unknown(channels: &mut [Block; 5]) {
     }
 }
 
-/// How much pixels near the border count: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
+/// The weights of pixels near the border: 0.14, 0.14, 0.4472, 0.4472, 0.4472, then 1.
 #[inline(always)]
 fn border_weight(i: usize, n: usize) -> f32 {
     let step = |distance: usize| match distance {

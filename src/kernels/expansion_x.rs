@@ -1,5 +1,5 @@
-//! Polynomial expansion, horizontal half: the column moments against the applicability times 1, x and x², and the
-//! least-squares solution `f ≈ xᵀA x + bᵀx + c`, of which A and b are kept.
+//! Polynomial expansion, horizontal half: the column moments are summed with the applicability times 1, x and x², and
+//! give the least-squares solution `f ≈ xᵀA x + bᵀx + c`, of which A and b are kept.
 //!
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
 //! Gaussian applicability of his thesis (2002).
@@ -12,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture, of the neighbourhood, and the inverse normal matrix.
+    /// Shape of the image, of the neighbourhood, and the inverse normal matrix.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -44,7 +44,7 @@ kernel!(
 );
 
 impl Params {
-    /// The parameters for a picture of this size and an applicability of this radius.
+    /// The parameters for an image of this size and an applicability of this radius.
     pub fn new(size: Size, radius: u32, applicability: &tables::Applicability) -> Self {
         let tables::Applicability { inv_x, inv_1_xx, inv_xx, inv_xy, .. } = *applicability;
         Self { width: size.width, height: size.height, radius, inv_x, inv_1_xx, inv_xx, inv_xy }

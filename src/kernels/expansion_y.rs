@@ -1,4 +1,4 @@
-//! Polynomial expansion, vertical half: a picture's columns against the applicability times 1, y and y².
+//! Polynomial expansion, vertical half: an image's columns are summed with the applicability times 1, y and y².
 //!
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
 //! Gaussian applicability of his thesis (2002).
@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the neighbourhood.
+    /// Shape of the image and of the neighbourhood.
     struct Params {
         /// Pixels in a row.
         width: u32,

@@ -1,9 +1,9 @@
 //! Each pixel's equations for its displacement from the image gradients in x, y and time.
 //!
-//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = −Σ ∇I I_t`. The gradients in x and
-//! y are Sobel's kernels over 8, that in time is the mean difference of 3 × 3 pixels, over 9: with these factors they are
-//! derivatives, in gray levels per pixel and per frame. A pixel counts by the least share of its neighbourhood that both
-//! pictures show.
+//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = −Σ ∇I I_t`. The gradients in
+//! x and y are Sobel's kernels over 8, that in time is the mean difference of 3 × 3 pixels, over 9: with these factors
+//! they are derivatives, in gray levels per pixel and per frame. A pixel's weight is the least share of its
+//! neighbourhood that both images show.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -11,14 +11,14 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures, and what is wanted.
+    /// Shape of the images, and the kind of output.
     struct Params {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
-        /// 0: the last two channels are the right-hand sides. 1: they are the square of I_t and the share that both pictures
-        /// show, for the confidence.
+        /// 0: the last two channels are the right-hand sides. 1: they are the square of I_t and the share that both
+        /// images show, for the confidence.
         residual: u32,
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers that look random, the same on both sides and on every machine.
+//! Pseudo-random numbers, the same on both sides and on every machine.
 
 /// The finaliser of MurmurHash3, of a number that is not 0.
 #[inline(always)]

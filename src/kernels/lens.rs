@@ -1,7 +1,7 @@
-//! What the kernels that read a raw picture share: the lens, and reading between pixels.
+//! Shared by the kernels that read a raw image: the lens, and bilinear sampling.
 
-/// Where the lens shows what an ideal pinhole would show at (x, y), both at a distance of 1 (Brown 1971 with a rational
-/// radial factor). `a` is k1 k2 p1 p2, `b` is k3 k4 k5 k6.
+/// The place at which the lens shows what an ideal pinhole shows at (x, y), both in the plane at unit distance (Brown
+/// 1971 with a rational radial factor). `a` is k1 k2 p1 p2, `b` is k3 k4 k5 k6.
 #[inline(always)]
 pub(super) fn distort([x, y]: [f32; 2], a: [f32; 4], b: [f32; 4]) -> [f32; 2] {
     let ([k1, k2, p1, p2], [k3, k4, k5, k6]) = (a, b);
@@ -18,7 +18,7 @@ pub(super) fn clamp_to_frame(place: f32, last: f32) -> f32 {
     if place > 0.0 { place.min(last) } else { 0.0 }
 }
 
-/// A plane read between pixels, at a place that is clamped to it. `value` is applied to each pixel first.
+/// Samples a plane bilinearly, at a place that is clamped to it. `value` is applied to each pixel first.
 #[inline(always)]
 pub(super) fn bilinear(
     plane: &[f32],

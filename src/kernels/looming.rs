@@ -1,14 +1,15 @@
-//! How fast each cell's surroundings come nearer: the nearness rate and the divergence of the flow on the view sphere.
+//! Looming of each cell: the nearness rate and the divergence of the flow on the view sphere.
 //!
-//! **Divergence**: the rates of a window of cells are fitted affinely by least squares, each cell weighted by its confidence.
-//! With its slopes, and the rate (ẋ, ẏ) it has at the cell, the divergence of the spherical flow on the unit sphere is
-//! `∂ẋ/∂x + ∂ẏ/∂y − 3 (x ẋ + y ẏ) / (1 + x² + y²)` in coordinates of the pinhole's plane. Its error is of second order
-//! in the window's width. It is not there where half of the window's cells are missing.
+//! **Divergence**: the rates of a window of cells are fitted affinely by least squares, each cell weighted by its
+//! confidence. With its slopes, and the rate (ẋ, ẏ) it has at the cell, the divergence of the spherical flow on the
+//! unit sphere is `∂ẋ/∂x + ∂ẏ/∂y − 3 (x ẋ + y ẏ) / (1 + x² + y²)` in coordinates of the pinhole's plane. Its error is
+//! of second order in the window's width. It is unknown where half of the window's cells are missing.
 //!
-//! **Nearness rate** N, a frame: the inverse of the time to contact along the bearing, in frames. With the direction of
-//! motion v̂ the rate is `N g` with `g = √(1 + x² + y²) (v̂_z (x, y) − (v̂_x, v̂_y))`. Two estimates are blended by their
-//! inverse variances: the flow's length against g, which is good far from v̂; and the growth of the flow across the
-//! window against that of g, which is good near v̂, where neither v̂'s error nor the surface's slant matters to it.
+//! ***Nearness rate** N, per frame: the inverse of the time to contact along the bearing in frames. With the direction
+//! of motion v̂ the rate is `N g` with `g = √(1 + x² + y²) (v̂_z (x, y) − (v̂_x, v̂_y))`. Two estimates are blended by
+//! their inverse variances: the ratio of the flow to g, which is accurate far from v̂; and the ratio of the flow's
+//! growth across the window to that of g, which is accurate near v̂, where neither v̂'s error nor the surface's slant
+//! matters.
 
 use super::bearings::rows;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -24,15 +25,15 @@ params! {
         columns: u32,
         /// Rows of cells.
         rows: u32,
-        /// How far the divergence's window reaches to each side, cells, at most 16.
+        /// Radius of the divergence's window in cells, at most 16.
         radius: u32,
-        /// How far the nearness rate's window reaches, at most as far.
+        /// Radius of the nearness rate's window in cells, at most as large.
         inner: u32,
-        /// From one cell's centre to the next, in the pinhole's plane.
+        /// Distance of neighbouring cells' centres in the pinhole's plane.
         pitch: [f32; 2],
-        /// The first cell's centre there.
+        /// The first cell's centre in that plane.
         origin: [f32; 2],
-        /// Standard error of the rate of a fully trusted cell, a frame, in the pinhole's plane.
+        /// Standard error of the rate of a cell with confidence 1, per frame, in the pinhole's plane.
         noise: f32,
         /// Cells of less confidence are left out.
         least_confidence: f32,
@@ -59,7 +60,7 @@ fn dot([a, b]: Pair, [c, d]: Pair) -> f32 {
     a * c + b * d
 }
 
-/// What a window's cells sum to.
+/// The sums over a window's cells.
 #[derive(Default)]
 struct Sums {
     count: f32,
@@ -162,13 +163,13 @@ fn fit(p: &Params, all: &Sums, near: &Sums, origin: Pair, v_error: f32, cells: f
     let n_square = 1.0 + dot(origin, origin);
     let divergence = by_x[0] + by_y[1] - 3.0 * dot(origin, here) / n_square;
 
-    // What the affine motion leaves is the noise of the rates, and edges in depth.
+    // The residual of the affine motion is the noise of the rates, and edges in depth.
     let left = all.square * share - dot(rate, rate) - dot(by_x, c_x) - dot(by_y, c_y);
     let variance = p.noise * p.noise + 0.5 * left.max(0.0);
-    // From the flow's length against its distance from the direction of motion: good far from it.
+    // From the flow's length relative to its distance from the direction of motion: accurate far from it.
     let far = near.ideal_rate / near.ideal_square.max(1e-20);
     let far_noise = variance / near.ideal_square.max(1e-20);
-    // From its growth within the window: good near it, where the surface's slant does not matter.
+    // From its growth within the window: accurate near it, where the surface's slant does not matter.
     let growth_square = (all.ideal_square - all.weight * dot(ideal, ideal)).max(1e-20);
     let growth = (all.ideal_rate - all.weight * dot(ideal, rate)) / growth_square;
     let growth_noise = variance / growth_square;
@@ -183,7 +184,7 @@ fn fit(p: &Params, all: &Sums, near: &Sums, origin: Pair, v_error: f32, cells: f
     [nearness_rate, divergence, error, all.weight / cells]
 }
 
-/// Cells of a rough world ahead, 0.1 apart, as [`cells`](super::cells) would leave them.
+/// Cells of a rough world ahead, 0.1 apart, as [`cells`](super::cells) outputs them.
 pub(super) fn cells_case(size: Size, fill: Fill, seed: u32) -> Vec<f32> {
     let stride = size.stride();
     let mut random = Random::new(seed);

@@ -1,8 +1,8 @@
 //! The kernels, one file each, and their registry.
 //!
-//! To add one: `shaders/foo.wgsl`, `src/kernels/foo.rs`, and the word `foo` in the list below. The shader's checks,
-//! its pipeline and a named test of GPU against CPU follow from the list; `viewsphere bench` and `crosscheck` show what a
-//! plan uses.
+//! To add one: `shaders/foo.wgsl`, `src/kernels/foo.rs`, and the word `foo` in the list below. The list generates the
+//! shader's checks, its pipeline and a named test of GPU against CPU; `viewsphere bench` and `crosscheck` show the
+//! kernels that a plan uses.
 
 mod bearings;
 pub mod compare;
@@ -23,7 +23,7 @@ macro_rules! registry {
         /// Every kernel.
         pub static ALL: &[&crate::kernel::Kernel] = &[$(&$kernel::KERNEL),*];
 
-        /// Calls a macro with the names of all kernels, so that tests are made from the one list.
+        /// Calls a macro with the names of all kernels, so that tests are generated from this list.
         #[macro_export]
         macro_rules! for_each_kernel {
             ($d call:ident) => { $d call! { $($kernel),* } };

@@ -1,7 +1,7 @@
-//! Each pixel's normal equations for its displacement, with the second frame read where the flow so far points.
+//! Each pixel's normal equations for its displacement, with the second frame sampled where the flow so far points.
 //!
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3; the border's weights and
-//! what happens outside the picture are OpenCV's.
+//! the treatment of places outside the image are OpenCV's.
 
 use super::expansion_pair::{BLOCK, Block, ExpansionPair, Model, Stretch, fours, squared};
 use super::parallel_rows::dimensions;
@@ -10,15 +10,15 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
-        /// How much of the flow so far the equations contain: 1 for a new flow, 0 for what is to be added to it.
+        /// The share of the flow so far in the equations: 1 to solve for the flow, 0 to solve for its increment.
         carried: f32,
-        /// How much a pixel counts whose place has run out of the second frame: 1, or 0 to leave it out.
+        /// The weight of a pixel whose place is outside the second frame: 1, or 0 to leave it out.
         outside: f32,
     }
 }
@@ -53,7 +53,7 @@ fn reference(
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p));
 }
 
-/// G = AᵀA and h = AᵀΔb with Δb = b + A d, of which so much is carried: channels xx, xy, yy, x, y.
+/// G = AᵀA and h = AᵀΔb with Δb = b + `carried` · A d: channels xx, xy, yy, x, y.
 #[inline(always)]
 pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params) -> [Block; 5] {
     let Stretch { u, v, weights_x, weight_y, .. } = *stretch;

@@ -1,14 +1,15 @@
-//! Polynomial expansion by normalised convolution, horizontal half: all moments of the certainty c against the
+//! Polynomial expansion by normalised convolution, horizontal half: all moments of the certainty c with the
 //! applicability g, and the least-squares solution `f ≈ xᵀA x + bᵀx + c`, of which A and b are kept.
 //!
-//! The solution minimises Σ g c (f − model)². Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA
-//! 2003, section 2, with the separable Gaussian applicability of his thesis (2002). Its certainty is Σ g c.
+//! The solution minimises Σ g c (f − model)². Farnebäck, Two-frame motion estimation based on polynomial expansion,
+//! SCIA 2003, section 2, with the separable Gaussian applicability of his thesis (2002). Its certainty is Σ g c.
 //!
-//! Where too little is known around a pixel, A, b and the certainty are 0. The criterion is each pivot of the elimination
-//! against its diagonal element: the share of a term that the terms before it do not explain. With a certainty of 1 that
-//! is at least ⅓. At the edge of a mask it is some 0.3, one pixel into the mask 0.09 and two pixels 0.02 (radius 5, sigma
-//! 1.2), and the noise of b grows by 2, 5 and 12. Nothing is taken from under a share of 0.05, which holds the growth of
-//! rounding under twentyfold, and the certainty fades in above it, so that nothing hangs on a pivot's last digit.
+//! Where too little is known around a pixel, A, b and the certainty are 0. The criterion is each pivot of the
+//! elimination against its diagonal element: the share of a term that the terms before it do not explain. With a
+//! certainty of 1 that is at least ⅓. At the edge of a mask it is some 0.3, one pixel into the mask 0.09 and two pixels
+//! 0.02 (radius 5, sigma 1.2), and the noise of b grows by 2, 5 and 12. Nothing is taken from under a share of 0.05,
+//! which holds the growth of rounding under twentyfold, and the certainty fades in above it, so that nothing hangs on a
+//! pivot's last digit.
 
 use glam::{Mat4, Vec4};
 
@@ -21,7 +22,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the neighbourhood, and what is demanded of it.
+    /// Shape of the image and of the neighbourhood, and the conditions on it.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -29,7 +30,7 @@ params! {
         height: u32,
         /// The neighbourhood has `2 radius + 1` columns.
         radius: u32,
-        /// The smallest share of each term that the terms before may leave.
+        /// The smallest share of each term that the terms before it may leave unexplained.
         min_share: f32,
         /// The least certainty of the whole neighbourhood, Σ g c.
         least_certainty: f32,
@@ -55,7 +56,7 @@ const MIN_SHARE: f32 = 0.05;
 const LEAST_CERTAINTY: f32 = 1e-6;
 
 impl Params {
-    /// The parameters for a picture of this size and an applicability of this radius.
+    /// The parameters for an image of this size and an applicability of this radius.
     pub fn new(size: Size, radius: u32) -> Self {
         let Size { width, height } = size;
         Self { width, height, radius, min_share: MIN_SHARE, least_certainty: LEAST_CERTAINTY }
@@ -64,10 +65,10 @@ impl Params {
 
 /// Exponents of x and y in the basis 1, x, y, x², y², xy.
 const BASIS: [[usize; 2]; 6] = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
-/// Sums of a pixel: 15 moments of the certainty and 6 of the picture times it.
+/// Sums of a pixel: 15 moments of the certainty and 6 of the image times it.
 const SUMS: usize = 21;
 
-/// The power of x and the channel of each sum: x from 0 to 4 for y⁰, to 3 for y¹ and so on, then those of the picture.
+/// The power of x and the channel of each sum: x from 0 to 4 for y⁰, to 3 for y¹ and so on, then those of the image.
 const fn terms() -> [[usize; 2]; SUMS] {
     let mut terms = [[0; 2]; SUMS];
     let mut n = 0;
@@ -141,10 +142,10 @@ fn reference(
     );
 }
 
-/// From the sums to b_x, b_y, A_xx, A_yy, 2 A_xy and the certainty, of four pixels.
+/// b_x, b_y, A_xx, A_yy, 2 A_xy and the certainty of four pixels, from their sums.
 ///
-/// Elimination without square roots (LDLᵀ). Rounding is not worse for coordinates in pixels than for scaled ones: scaling
-/// an unknown scales its row, its column and its pivot alike.
+/// Elimination without square roots (LDLᵀ). Rounding is not worse for coordinates in pixels than for scaled ones:
+/// scaling an unknown scales its row, its column and its pivot alike.
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "rows and columns of a matrix, numbered as in the textbook")]
 fn solve(p: &Params, sum: impl Fn(usize) -> Vec4) -> ([Vec4; 5], Vec4) {
@@ -162,7 +163,7 @@ fn solve(p: &Params, sum: impl Fn(usize) -> Vec4) -> ([Vec4; 5], Vec4) {
     let mut factor = [[Vec4::ZERO; 6]; 6];
     for k in 0..6 {
         let pivot = normal[k][k];
-        // A pivot that is not a number compares as false.
+        // A NaN pivot compares as false.
         determined &= pivot.cmpgt(p.min_share * diagonal[k]);
         share = share.min(pivot / diagonal[k]);
         for i in k + 1..6 {
@@ -197,7 +198,7 @@ fn cases(size: Size) -> Vec<Case> {
     let applicability = tables::applicability(5, 1.2);
     let outputs = [4 * size.stride(), size.stride(), size.stride()];
     each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &outputs, size, |fill| {
-        // Sums that no picture has would make normal matrices that are not positive definite.
+        // Sums that no image has would make normal matrices that are not positive definite.
         let [weighted, certainty] = masked(size, fill);
         let weights = tables::applicability_from(&applicability.weights, 5);
         let mut moments = vec![0.0; CHANNELS * size.stride() * size.height as usize];

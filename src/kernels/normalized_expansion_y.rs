@@ -1,10 +1,10 @@
-//! Polynomial expansion by normalised convolution, vertical half: the columns of a picture's certainty c, and of the
-//! picture f times its certainty, against the applicability g times powers of y.
+//! Polynomial expansion by normalised convolution, vertical half: the columns of an image's certainty c, and of the
+//! image f times its certainty, are summed with the applicability g times powers of y.
 //!
-//! Channels are Σ yᵏ g c for k from 0 to 4, which the normal matrix is made of, then Σ yᵏ g c f for k from 0 to 2.
+//! Channels are Σ yᵏ g c for k from 0 to 4, the elements of the normal matrix, then Σ yᵏ g c f for k from 0 to 2.
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
-//! Gaussian applicability of his thesis (2002). Beyond the border stand the pixels of the border, so that a certainty of
-//! 1 everywhere gives what the expansion without certainty gives.
+//! Gaussian applicability of his thesis (2002). The border is replicated, so that a certainty of 1 everywhere gives the
+//! expansion without certainty.
 
 use super::expansion_y::power;
 use super::parallel_rows::{Split, bands, clamp_index, dimensions, weighted_sum};
@@ -14,7 +14,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the neighbourhood.
+    /// Shape of the image and of the neighbourhood.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -92,7 +92,7 @@ fn cases(size: Size) -> Vec<Case> {
     })
 }
 
-/// A picture times its certainty, and that certainty, of which a quarter of the picture has none.
+/// An image times its certainty, and that certainty, of which a quarter of the image has none.
 pub(super) fn masked(size: Size, fill: Fill) -> [Vec<f32>; 2] {
     let mut weighted = planes(size, 1, fill, [0.0, 255.0], 3);
     let mut certainty = planes(size, 1, fill, [0.0, 1.0], 4);

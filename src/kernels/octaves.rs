@@ -1,4 +1,4 @@
-//! The endless texture of the simulator for neighbouring pixels at once: see [`crate::sim`].
+//! The unbounded texture of the simulator, for several neighbouring pixels at once.
 
 use super::hash::scrambled;
 use super::surface_layout::{LANES, Lanes, pick};
@@ -7,7 +7,7 @@ const OCTAVES: u32 = 11;
 const AMPLITUDE: f32 = 50.0;
 const FULL_LOG2: f32 = 1.5;
 
-/// Where pixels lie on a texture.
+/// The places of pixels on a texture.
 pub(super) struct Places {
     /// Metres beyond the cells, or turns if there is a period.
     pub(super) u: Lanes,
@@ -49,7 +49,7 @@ fn value(places: &Places, octave: u32, lane: usize) -> f32 {
     let per_metre = 0.25 * (1 << octave) as f32;
     let period = places.period[lane];
     let around = period > 0.0;
-    // Around a period there is a whole number of grid points.
+    // A period contains a whole number of grid points.
     let points = (period * per_metre + 0.5).floor().max(1.0);
     let turn = pick(around, 1.0 / points, 0.0);
     let (u, v) = (places.u[lane] * pick(around, points, per_metre), places.v[lane] * per_metre);
@@ -72,7 +72,7 @@ fn value(places: &Places, octave: u32, lane: usize) -> f32 {
     sum
 }
 
-/// A whole number within ±2²² as an integer: a conversion that answers to all numbers is not one of vectors.
+/// A whole number within ±2²² as an integer: a conversion that handles all numbers has no vector instruction.
 #[inline(always)]
 pub(super) fn whole(number: f32) -> i32 {
     const SHIFT: f32 = 12_582_912.0;

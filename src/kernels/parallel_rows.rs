@@ -1,7 +1,7 @@
-//! What the CPU references share: rows spread over the cores, and weighted sums of rows.
+//! Shared by the CPU references: rows distributed over the cores, and weighted sums of rows.
 //!
-//! Sums are plain multiplications and additions in a fixed order: no fused multiply-add, whatever the processor has,
-//! so that every x86 and ARM machine computes the same bits.
+//! Sums are plain multiplications and additions in a fixed order, without fused multiply-add on any processor, so that
+//! every x86 and ARM machine computes the same bits.
 
 use std::cell::RefCell;
 
@@ -9,10 +9,10 @@ use pulp::{Arch, NullaryFnOnce};
 
 use crate::frame::Size;
 
-/// Below this many values a piece of work stays on one core: handing it over would cost more.
+/// Work on fewer values than this stays on one core: distributing it would cost more.
 pub(crate) const SMALLEST_SHARE: usize = 1 << 15;
 
-/// The output rows `y0 .. y0 + rows` of up to three buffers, and room to work in.
+/// The output rows `y0 .. y0 + rows` of up to three buffers, and scratch memory.
 pub(crate) struct Band<'a> {
     /// The first row's number.
     pub(crate) y0: usize,
@@ -22,22 +22,22 @@ pub(crate) struct Band<'a> {
     pub(crate) second: &'a mut [f32],
     /// Rows of the third output, if there is one.
     pub(crate) third: &'a mut [f32],
-    /// As many values as were asked for, with anything in them.
+    /// Scratch memory of the requested length, with arbitrary values.
     pub(crate) scratch: &'a mut [f32],
 }
 
 /// How [`bands`] splits its outputs.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Split {
-    /// Values in a row of the first output, all channels together.
+    /// Values per row of the first output, all channels together.
     pub(crate) row: usize,
-    /// The same of the second output; 0 where there is none.
+    /// The same for the second output; 0 without one.
     pub(crate) second_row: usize,
-    /// The same of the third output.
+    /// The same for the third output.
     pub(crate) third_row: usize,
-    /// Values of scratch that a band needs.
+    /// Number of scratch values that a band needs.
     pub(crate) scratch: usize,
-    /// How much dearer a value is than a usual one; 0 stands for 1.
+    /// The cost of a value relative to a usual one; 0 stands for 1.
     pub(crate) dearer: usize,
 }
 
@@ -49,7 +49,8 @@ impl Split {
 
 /// Runs `f` over bands of rows, on all cores of rayon's pool and with the widest vectors that this processor has.
 ///
-/// `f` and what it calls should be `#[inline(always)]`, or they are compiled for the narrowest processor.
+/// `f` and the functions that it calls should be `#[inline(always)]`; otherwise they are compiled for the narrowest
+/// vectors.
 pub(crate) fn bands<F: Fn(Band<'_>) + Sync>(out: &mut [f32], second: &mut [f32], split: Split, f: F) {
     halve(0, [out, second, &mut []], split, &f);
 }

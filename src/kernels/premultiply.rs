@@ -1,8 +1,8 @@
-//! A picture times the certainty of its pixels, and that certainty clamped to its range of 0 to 1.
+//! Multiplies an image by the certainty of its pixels, and clamps that certainty to 0 to 1.
 //!
-//! Smoothing and reducing both alike is normalised averaging: the quotient of the two is the average of what is known.
-//! Knutsson and Westin, Normalized and differential convolution, CVPR 1993. The quotient is never taken here, for the
-//! expansion weighs each value by its certainty again.
+//! Smoothing and reducing both alike is normalised averaging: the quotient of the two is the average of the known
+//! pixels. Knutsson and Westin, Normalized and differential convolution, CVPR 1993. The quotient is never taken here,
+//! for the expansion weighs each value by its certainty again.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -47,7 +47,7 @@ fn reference(
                 let start = (band.y0 + i) * stride;
                 for x in 0..width {
                     let (f, c) = (gray[start + x], certainty[start + x]);
-                    // What is not a number compares as false with everything, so it is not known.
+                    // NaN compares as false with everything, so it is unknown.
                     let known = c > 0.0 && f.abs() <= 1e30;
                     clamped[x] = if known { c.min(1.0) } else { 0.0 };
                     weighted[x] = if known { clamped[x] * f } else { 0.0 };
@@ -67,7 +67,7 @@ fn cases(size: Size) -> Vec<Case> {
         vec![planes(size, 1, fill, [0.0, 65535.0], 7), planes(size, 1, fill, [-0.5, 1.5], 8)]
     });
     for (value, case) in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e38].into_iter().zip(&mut cases) {
-        // The first pixel of the certainty, and the second of the picture where there is one, in every row.
+        // The first pixel of the certainty, and the second of the image where there is one, in every row.
         let stride = size.stride();
         case.inputs[1].iter_mut().step_by(stride).for_each(|c| *c = value);
         case.inputs[0].iter_mut().skip(1).step_by(stride).for_each(|f| *f = value);

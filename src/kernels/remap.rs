@@ -1,4 +1,4 @@
-//! A picture read bilinearly at the places that a map says, its border replicated.
+//! Samples an image bilinearly at the places of a map; its border is replicated.
 
 use super::lens::clamp_to_frame;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -7,15 +7,15 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the two pictures.
+    /// Shape of the two images.
     struct Params {
         /// Pixels in a row of the result.
         width: u32,
         /// Rows of the result.
         height: u32,
-        /// Pixels in a row of the picture that is read.
+        /// Pixels in a row of the sampled image.
         in_width: u32,
-        /// Rows of the picture that is read.
+        /// Rows of the sampled image.
         in_height: u32,
     }
 }
@@ -51,11 +51,11 @@ fn reference(p: &Params, picture: &[f32], map: &[f32], remapped: &mut [f32]) {
     );
 }
 
-/// Pixels worked on at a time.
+/// Number of pixels per block.
 const BLOCK: usize = 32;
 
-/// Reads the picture at up to [`BLOCK`] places. In three goes over a whole block, so that the compiler makes vectors of
-/// all but the reading itself, which the places keep from being one.
+/// Samples the image at up to [`BLOCK`] places. In three passes over a whole block, so that the compiler vectorizes
+/// everything but the loads, whose addresses depend on the places.
 #[inline(always)]
 fn read(
     out: &mut [f32],
@@ -70,7 +70,7 @@ fn read(
     let (mut first, mut right, mut below) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
     for i in 0..BLOCK {
         (x[i], y[i]) = (clamp_to_frame(x[i], last[0] as f32), clamp_to_frame(y[i], last[1] as f32));
-        // Clamped to the picture, so that nothing is lost.
+        // Clamped to the image, so that nothing is lost.
         let (left, above) = (x[i] as i32 as u32, y[i] as i32 as u32);
         (x[i], y[i]) = (x[i] - left as f32, y[i] - above as f32);
         first[i] = above * stride as u32 + left;

@@ -1,4 +1,5 @@
-//! Rows of a picture smoothed by a Gaussian and read at fractional columns: the horizontal half of one pyramid step.
+//! Smooths the rows of an image by a Gaussian and samples them at fractional columns: the horizontal half of one
+//! pyramid step.
 
 use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
 use super::resample_y::mix_weights;
@@ -8,13 +9,13 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures and of the Gaussian.
+    /// Shape of the images and of the Gaussian.
     struct Params {
         /// Pixels in a row of the result.
         width: u32,
-        /// Rows, of both pictures.
+        /// Rows, of both images.
         height: u32,
-        /// Pixels in a row of the picture that is read.
+        /// Pixels in a row of the sampled image.
         in_width: u32,
         /// Samples of the Gaussian, odd.
         taps: u32,

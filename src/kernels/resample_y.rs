@@ -1,4 +1,5 @@
-//! Columns of a picture smoothed by a Gaussian and read at fractional rows: the vertical half of one pyramid step.
+//! Smooths the columns of an image by a Gaussian and samples them at fractional rows: the vertical half of one pyramid
+//! step.
 
 use super::parallel_rows::{Split, bands, dimensions, reflect_101, weighted_sum};
 use super::tables;
@@ -7,13 +8,13 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures and of the Gaussian.
+    /// Shape of the images and of the Gaussian.
     struct Params {
-        /// Pixels in a row, of both pictures.
+        /// Pixels in a row, of both images.
         width: u32,
         /// Rows of the result.
         height: u32,
-        /// Rows of the picture that is read.
+        /// Rows of the sampled image.
         in_height: u32,
         /// Samples of the Gaussian, odd.
         taps: u32,
@@ -48,7 +49,7 @@ fn reference(p: &Params, gray: &[f32], gauss: &[f32], place: &[f32], columns: &m
     });
 }
 
-/// Reading at a fraction between two smoothed samples is one sum over one sample more.
+/// Sampling at a fraction between two smoothed samples is one sum over one more sample.
 #[inline(always)]
 pub(super) fn mix_weights(weights: &mut [f32], gauss: &[f32], fraction: f32) {
     let mut before = 0.0;

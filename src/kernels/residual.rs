@@ -1,7 +1,7 @@
-//! How well the two frames' expansions agree under the flow that was found, pixel by pixel.
+//! The residual of each pixel: how well the two frames' expansions agree under the estimated flow.
 //!
-//! Channels of the result: AᵀA (xx, xy, yy), the square of what the flow leaves of Δb = −½ (b2 − b1), and 1 where both
-//! frames show the place, times the first frame's certainty, which all of them are weighted with.
+//! Channels of the result: AᵀA (xx, xy, yy), the square of the residual of Δb = −½ (b2 − b1), and 1 where both frames
+//! show the place. All are weighted by the first frame's certainty.
 
 use super::expansion_pair::{BLOCK, ExpansionPair, fours, squared};
 use super::parallel_rows::dimensions;
@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,

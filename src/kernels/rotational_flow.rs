@@ -1,4 +1,4 @@
-//! The flow that the camera's turn alone makes, as a beginning for the search.
+//! The flow that the camera's rotation alone causes, as an initial flow for the search.
 
 use super::bearings::{Pinhole, rows};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};

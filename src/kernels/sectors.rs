@@ -1,11 +1,11 @@
-//! What the cells of each sector of the view say together.
+//! The summary of the cells in each sector of the view.
 //!
-//! Channels of the result: 0 the share of the sector's cells that are trusted enough; 1 to 3 their nearness rate's lower
+//! Channels of the result: 0 the share of the sector's cells with enough confidence; 1 to 3 their nearness rate's lower
 //! quantile, median and upper quantile; 4 the upper quantile of the divergence where that is positive, and else 0: a
-//! signed sum would be the net flux through the sector's border, where an obstacle within cancels itself; 5 their mean
+//! signed sum would be the net flux through the sector's border, in which an obstacle inside it cancels; 5 their mean
 //! confidence; 6 to 8 their mean spherical flow F, weighted by confidence; 9 to 14 the moment `Σ w n nᵀ` of the normals
-//! `n = p × F` (xx, xy, xz, yy, yz, zz), whose weakest direction is that of motion; 15 the mean standard error of the
-//! nearness rate. Rates are a frame.
+//! `n = p × F` (xx, xy, xz, yy, yz, zz), whose smallest eigenvalue belongs to the direction of motion; 15 the mean
+//! standard error of the nearness rate. Rates are per frame.
 //!
 //! Quantiles are values of single cells, by nearest rank, and found from the highest bit to the lowest by counting: the
 //! same bits whatever the order of the cells.
@@ -149,7 +149,7 @@ fn cases(size: Size) -> Vec<Case> {
     let fills = [Fill::Flat, Fill::Textured];
     each_fill(&fills, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
         let mut looming = planes(cells, 4, fill, [-1.0, 1.0], 5);
-        // Confidence is not negative; some cells are below what counts, none is near the limit.
+        // Confidence is not negative; some cells are below the limit, none is near it.
         for rows in looming.chunks_exact_mut(4 * cells.stride()) {
             for confidence in &mut rows[3 * cells.stride()..] {
                 *confidence = if *confidence < -0.2 { 0.0 } else { 0.3 + 0.5 * confidence.abs() };

@@ -1,7 +1,7 @@
-//! What a sensor makes of gray levels: noise, and whole numbers from 0 to 255.
+//! The camera sensor: adds noise to gray levels and rounds them to whole numbers from 0 to 255.
 //!
-//! The noise is the sum of four uniform numbers (Irwin and Hall), within 3.5 standard deviations, from a hash of the pixel
-//! and the frame's seed: the same whoever computes it, in whatever order.
+//! The noise is the sum of four uniform numbers (Irwin and Hall), within 3.5 standard deviations, from a hash of the
+//! pixel and the frame's seed: independent of the order of computation.
 
 use super::hash::scrambled;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -10,7 +10,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture, and the noise.
+    /// Shape of the image, and the noise.
     struct Params {
         /// Pixels in a row.
         width: u32,

@@ -1,7 +1,7 @@
-//! The gray level of each pixel, and how near it is, of what its samples meet.
+//! Shading: the gray level and the nearness of each pixel, from the surfaces that its samples hit.
 //!
-//! Each thing that a pixel sees is shown once, by its texture in the middle of the samples that see it, and weighted with
-//! their number. The texture is made for the size of a pixel, so that this is its mean over them.
+//! Each face that a pixel sees is evaluated once, by its texture at the mean of the samples that see it, weighted by
+//! their number. The texture is filtered to the size of a pixel, so that this is its mean over the samples.
 
 use super::octaves::{Places, log2_of, textured, turns, whole};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -12,13 +12,13 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture, and its weight.
+    /// Shape of the image, and its weight.
     struct Params {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
-        /// Weight of this picture in the sum of those of an exposure.
+        /// Weight of this image in the sum of those of an exposure.
         share: f32,
     }
 }
@@ -34,9 +34,9 @@ kernel!(
     },
 );
 
-/// Gray level of the sky at the horizon, and how many more there are straight up.
+/// Gray level of the sky at the horizon, and the difference straight up.
 pub const SKY: [f32; 2] = [170.0, 60.0];
-/// The share by which what faces up is brighter than what is upright, and what faces down darker.
+/// The share by which faces that point up are brighter than upright ones, and faces that point down darker.
 pub const LIGHT: f32 = 0.15;
 
 fn reference(
@@ -155,7 +155,7 @@ fn pixels(
             sum[lane] += 0.25 * share[lane] * level[lane].clamp(0.0, 255.0);
         }
     }
-    // What lies between the samples is taken for what they meet.
+    // The area between the samples is assumed to show what they hit.
     let near = std::array::from_fn(|lane| pick((met[lane] > 0.0) | (sky[lane] > 0.0), met[lane], any_met[lane]));
     (sum, near)
 }

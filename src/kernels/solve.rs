@@ -1,7 +1,8 @@
-//! Rows of the five channels averaged by a symmetric window, and the displacement that solves the averaged equations.
+//! Averages rows of the five channels by a symmetric window, and solves the averaged equations for the displacement.
 //!
-//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3. The determinant is kept
-//! off zero by 10⁻³, as OpenCV does. What overflow leaves without a value counts as no motion, so that it cannot spread.
+//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3. 10⁻³ is added to the
+//! determinant to keep it off zero, as in OpenCV. A result without a value, after overflow, becomes zero motion, so
+//! that it cannot spread.
 
 use super::parallel_rows::{Band, Split, bands, dimensions, extend_row, repeat_last, weighted_sum};
 use super::tables;
@@ -10,7 +11,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the window.
+    /// Shape of the image and of the window.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -51,8 +52,8 @@ pub(super) fn displacement([g_xx, g_xy, g_yy, h_x, h_y]: [f32; 5]) -> [f32; 2] {
     [known((g_yy * h_x - g_xy * h_y) * scale), known((g_xx * h_y - g_xy * h_x) * scale)]
 }
 
-/// Averages rows of five channels by the window and hands `f` the number of each, the averages, and the row of the result
-/// that they belong to.
+/// Averages rows of five channels by the window and hands `f` the number of each, the averages, and the row of the
+/// result that they belong to.
 #[inline(always)]
 pub(super) fn average(
     p: &Params,
@@ -87,7 +88,7 @@ pub(super) fn average(
 /// What keeps the determinant off zero.
 const REGULAR: f32 = 1e-3;
 
-/// Displacements beyond it count as none.
+/// Displacements beyond this become zero.
 const LARGEST: f32 = 1e9;
 
 #[inline(always)]
@@ -95,20 +96,22 @@ fn known(d: f32) -> f32 {
     if d.abs() <= LARGEST { d } else { 0.0 }
 }
 
-/// How far roundings may drive the two sides' displacements apart, to first order in a rounding's relative error `ε / 2`.
+/// The largest difference that roundings may cause between the two sides' displacements, to first order in a rounding's
+/// relative error `ε / 2`.
 ///
 /// Both sides have the same columns. An average g of n terms, with S the average of the terms' magnitudes, is off by at
 /// most `n S ε / 2` in whatever order it is summed, so that two of them lie within `n S ε` of each other. Cramer's rule
 /// divides `N = g_yy h_x − g_xy h_y` (and the like for v) by `D = g_xx g_yy − g_xy² + 10⁻³`. Two factors of n roundings
-/// each, those of the products and that of the difference make `|δN| ≤ (2 n + 2) ε (S_yy S_hx + S_xy S_hy)`, and with one more for 10⁻³
-/// `|δD| ≤ (2 n + 3) ε (S_xx S_yy + S_xy² + 10⁻³)`, whatever cancels. From `N' / D' − N / D = (δN − d δD) / D'` follows
+/// each, those of the products and that of the difference make `|δN| ≤ (2 n + 2) ε (S_yy S_hx + S_xy S_hy)`, and with
+/// one more for 10⁻³ `|δD| ≤ (2 n + 3) ε (S_xx S_yy + S_xy² + 10⁻³)`, whatever cancels. From `N' / D' − N / D = (δN − d
+/// δD) / D'` follows
 ///
 /// `|δd| ≤ (|δN| + |d| |δD|) / (D − |δD|) + 4 ε |d|`,
 ///
-/// where the last part is that of the reciprocal, which WGSL allows 2.5 units in the last place, and of its product. So the
-/// bound grows with `S_xx S_yy / D`, as the ratio of the equations' eigenvalues does. Where D is within its roundings of
-/// zero, or d within its own of what counts as no motion, the sides may have any two displacements. Averages are those of
-/// the reference, and what follows from them is computed in `f64`.
+/// where the last part is that of the reciprocal, which WGSL allows 2.5 units in the last place, and of its product. So
+/// the bound grows with `S_xx S_yy / D`, as the ratio of the equations' eigenvalues does. Where D is within its
+/// roundings of zero, or d within its own of what counts as no motion, the sides may have any two displacements.
+/// Averages are those of the reference, and what follows from them is computed in `f64`.
 pub(super) fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let of_row = 5 * stride;
@@ -160,8 +163,9 @@ pub(super) fn cases(size: Size) -> Vec<Case> {
     let mut cases = each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {
         vec![equations(size, fill), window.clone()]
     });
-    // Determinants near the 10⁻³ that keeps them off zero, where it decides the displacement; products that overflow though
-    // the equations themselves do not; and edges all along one direction, which leave the motion along them almost open.
+    // Determinants near the 10⁻³ that keeps them off zero, where it decides the displacement; products that overflow
+    // though the equations themselves do not; and edges all along one direction, which leave the motion along them
+    // almost open.
     let scaled = |factor: f32| equations(size, Fill::Textured).iter().map(|value| factor * value).collect();
     for (name, columns) in
         [("weak", scaled(0.01)), ("overflowing", scaled(1e25)), ("edges", edges(size, 1e-3))]
@@ -193,8 +197,8 @@ fn edges(size: Size, ratio: f32) -> Vec<f32> {
     })
 }
 
-/// Equations of one displacement a pixel, up to 8 px, each with the angle of the first eigenvector, and both eigenvalues,
-/// that are drawn for it.
+/// Equations of one displacement a pixel, up to 8 px, each with the angle of the first eigenvector, and both
+/// eigenvalues, that are drawn for it.
 fn made(size: Size, mut draw: impl FnMut(&mut Random) -> (f32, [f32; 2])) -> Vec<f32> {
     let mut random = Random::new(23);
     let stride = size.stride();
@@ -224,7 +228,7 @@ mod tests {
 
     const SIZE: Size = Size::new(97, 61);
 
-    /// What the kernel makes of the columns, how far roundings may drive it, and what `f64` makes of them.
+    /// The kernel's result for the columns, its rounding bound, and the result in `f64`.
     fn solved(columns: &[f32], winsize: u32, gaussian: bool) -> Vec<[f64; 3]> {
         let radius = winsize / 2;
         let window = tables::window(winsize, gaussian);
@@ -253,9 +257,9 @@ mod tests {
         values
     }
 
-    /// The reference is one of the two sides, and exact arithmetic stands for the other: from equations as good as they can
-    /// be to edges along which rounding decides the motion, where nothing is promised. Elsewhere the roundings take up a
-    /// hundredth of the bound at least, so that it is no larger than it need be.
+    /// The reference is one of the two sides, and exact arithmetic stands for the other: from equations as good as they
+    /// can be to edges along which rounding decides the motion, where nothing is promised. Elsewhere the roundings take
+    /// up a hundredth of the bound at least, so that it is no larger than it need be.
     #[test]
     fn roundings_stay_within_the_bound() {
         for (winsize, gaussian) in [(2, false), (3, true), (13, false), (15, true), (101, false)] {
@@ -274,8 +278,8 @@ mod tests {
         }
     }
 
-    /// Where the eigenvalues' ratio stays below ten the bound leaves a mistake less room than 10⁻⁴ of a pixel and as much
-    /// of the displacement.
+    /// Where the eigenvalues' ratio stays below ten the bound leaves a mistake less room than 10⁻⁴ of a pixel and as
+    /// much of the displacement.
     #[test]
     fn the_bound_is_tight_where_the_equations_are_good() {
         for (winsize, gaussian) in [(13, false), (15, true), (31, false)] {

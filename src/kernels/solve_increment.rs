@@ -1,8 +1,8 @@
 //! As [`super::solve`], with the displacement that solves the averaged equations added to the flow so far.
 //!
-//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3, with equations in which the
-//! flow so far is not carried: a step of Newton's method for each pixel, as that of Lucas and Kanade is (Bouguet, Pyramidal
-//! implementation of the Lucas Kanade feature tracker, 2001).
+//! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3, with equations in which
+//! the flow so far is not carried: a step of Newton's method for each pixel, as that of Lucas and Kanade is (Bouguet,
+//! Pyramidal implementation of the Lucas Kanade feature tracker, 2001).
 
 use super::solve::{self, average, displacement};
 use super::test_inputs::{Fill, planes};
@@ -18,7 +18,7 @@ kernel!(
     tolerance: Tolerance {
         absolute: 1e-30,
         relative: 0.0, of_largest: 0.0,
-        reason: "as of solve, and that of the sum",
+        reason: "as in solve, and that of the sum",
     },
     rounding: rounding,
 );
@@ -36,7 +36,7 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], flow: 
     });
 }
 
-/// How far roundings may drive the two sides apart: as those of [`solve`], and one of the sum.
+/// The largest difference that roundings may cause: that of [`solve`], and one rounding of the sum.
 fn rounding(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], bound: &mut [f32]) {
     let mut flow = vec![0.0; bound.len()];
     reference(p, columns, window, so_far, &mut flow);

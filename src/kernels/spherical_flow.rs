@@ -1,9 +1,9 @@
-//! Flow on the view sphere: how far each pixel's bearing moved since the frame before, the camera's turn taken out.
+//! Flow on the view sphere: the derotated motion of each pixel's bearing since the previous frame.
 //!
-//! The two bearings are those of the pixel and of where the flow leads back to, turned into the current camera. The flow
-//! has the direction of their chord and the length of the arc between them: it is tangent to the sphere half-way, and
-//! agrees with the rate `−ρ (v − p pᵀv)` at mid-time to second order in the time between the frames, where the rate at
-//! either end agrees to first order only.
+//! The two bearings are those of the pixel and of the place to which the flow leads back, rotated into the current
+//! camera's frame. The flow has the direction of their chord and the length of the arc between them: it is tangent to
+//! the sphere half-way, and agrees with the rate `−ρ (v − p pᵀv)` at mid-time to second order in the time between the
+//! frames, where the rate at either end agrees to first order only.
 
 use super::bearings::{Pinhole, rows};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -12,7 +12,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture, and the ideal pinhole that took it.
+    /// Shape of the image, and the ideal pinhole that took it.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -20,7 +20,7 @@ params! {
         height: u32,
         /// Pixels of a focal length, to the right and down.
         focal: [f32; 2],
-        /// Where the axis meets the picture.
+        /// Where the axis meets the image.
         centre: [f32; 2],
     }
 }
@@ -55,7 +55,7 @@ fn reference(p: &Params, flow: &[f32], motion: &[f32], spherical_flow: &mut [f32
     });
 }
 
-/// A small turn about all axes and a direction of motion beside the camera's axis.
+/// A small rotation about all axes and a direction of motion beside the camera's axis.
 pub(super) fn motion_case() -> Vec<f32> {
     vec![
         -2e-4, 0.015, -0.011, 0.0, -0.015, -3e-4, 0.02, 0.0, 0.011, -0.02, -4e-4, 0.0, 0.1, -0.06, 0.993, 0.03,

@@ -1,4 +1,4 @@
-//! A made-up scene for the kernels that see surfaces.
+//! A synthetic scene for the kernels that render surfaces.
 
 use super::cast::cast;
 use super::surface_layout::{Kind, RAY, SurfaceRecord, TILE};
@@ -25,10 +25,10 @@ impl SurfaceInputs {
     }
 }
 
-/// The scene is computed for a picture of 5 × 5 tiles, and larger ones repeat it.
+/// The scene is computed for an image of 5 × 5 tiles, and larger ones repeat it.
 const PERIOD: [usize; 2] = [5 * TILE[0], 5 * TILE[1]];
 
-/// A ground, walls, boxes and cylinders, seen in all directions.
+/// Ground, walls, boxes and cylinders, in all directions.
 pub(super) fn surface_inputs(size: Size) -> SurfaceInputs {
     let block = block();
     let tiles = [(size.width as usize).div_ceil(TILE[0]), (size.height as usize).div_ceil(TILE[1])];
@@ -90,7 +90,7 @@ fn near_an_edge(scene: &SurfaceInputs, size: Size, rays: &[[f32; RAY]]) -> Vec<u
     let ids = |centres: bool, [x, y]: [f32; 2]| {
         let turned = |ray: &[f32; RAY]| {
             let [a, b, width, _, slopes @ ..] = *ray;
-            // A direction this far off the axis turns by less than its tangents change.
+            // A direction this far off the axis rotates by less than its tangents change.
             let scale = MARGIN * (1.0 + a * a + b * b);
             let [p, q, r, s] = if centres { [0.0; 4] } else { slopes };
             [a + x * scale, b + y * scale, width, 0.0, p, q, r, s]

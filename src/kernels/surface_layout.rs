@@ -1,25 +1,25 @@
-//! What the kernels that see made-up surfaces share: how rays and surfaces lie in their buffers.
+//! Shared by the kernels that render surfaces: the layout of rays and surfaces in their buffers.
 //!
 //! A surface stands in a frame of its own: a box around the middle of its frame, a rectangle as a box of no height, a
 //! plane as a rectangle of 10⁶ km, a cylinder around z. All places are the camera's, so that nothing far from the
 //! world's origin is rounded by more than what is near it.
 
-/// Pixels across and down of a tile, whose pixels have one list of surfaces.
+/// Width and height of a tile in pixels. The pixels of a tile share one list of surfaces.
 pub const TILE: [usize; 2] = [16, 8];
-/// Pixels that a reference works on at once.
+/// Number of pixels that a reference processes at once.
 pub(super) const LANES: usize = TILE[0];
 pub(super) type Lanes = [f32; LANES];
 
-/// Where in a pixel its four samples lie, in pixels from its centre: no two in one row or column.
+/// The offsets of a pixel's four samples from its centre, in pixels: no two in one row or column.
 pub const OFFSETS: [[f32; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [0.125, 0.375], [-0.375, 0.125]];
 
-/// Values of one pixel in the `rays` buffer: x/z and y/z of its centre, its width in radians (0 where the lens shows
-/// nothing), 0; then how x/z changes to the right and down, and y/z.
+/// Values of one pixel in the `rays` buffer: x/z and y/z of its centre, its width in radians (0 outside the lens's
+/// field of view), 0; then how x/z changes to the right and down, and y/z.
 pub const RAY: usize = 8;
 /// Values of one surface in the `surfaces` buffer, which begins with four values: the direction up, and 0.
 pub const SURFACE_LEN: usize = 24;
 
-/// A surface as the kernels see it.
+/// A surface in the form that the kernels take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceRecord {
     /// The surface's axes in the camera's frame.
@@ -36,7 +36,7 @@ pub struct SurfaceRecord {
     pub cells: [f32; 3],
     /// The surface's number in its world.
     pub number: u32,
-    /// What it is.
+    /// Its shape.
     pub kind: Kind,
 }
 
@@ -52,7 +52,7 @@ pub enum Kind {
 }
 
 impl SurfaceRecord {
-    /// As the buffer holds it.
+    /// The values in the layout of the buffer.
     pub fn values(&self) -> [f32; SURFACE_LEN] {
         let ([x, y, z], [a, b, c]) = (self.axes, self.place_m);
         let ([u, v, w], [i, j, k], half) = (self.texture_m, self.cells, self.half_m);

@@ -13,7 +13,8 @@ pub fn gauss(sigma: f64, taps: u32) -> Vec<f32> {
     (0..taps).map(|i| (weight(i) / sum) as f32).collect()
 }
 
-/// Where a row of `out` samples reads a row of `inner` samples: pairs of a whole index and a fraction, clamped to it.
+/// The places at which a row of `out` samples reads a row of `inner` samples: one pair per output sample of a whole
+/// index and a fraction, clamped to the row.
 ///
 /// The sample centres are aligned: `x_in = (x_out + ½) · in/out − ½`, in the precision of OpenCV's `resize`.
 pub fn place(inner: u32, out: u32) -> Vec<f32> {
@@ -33,8 +34,9 @@ pub fn place(inner: u32, out: u32) -> Vec<f32> {
         .collect()
 }
 
-/// Which samples of a row of `inner` lie under each of `out ≤ inner` wider ones: the first, how many, and the weights of
-/// the first and of the last against 1 for those between. Slivers under 10⁻³ are left out, as OpenCV's `resize` does.
+/// The samples of a row of `inner` that each of `out ≤ inner` wider samples covers, four values each: the first index,
+/// the count, and the weights of the first and of the last sample relative to 1 for those between. Slivers under 10⁻³
+/// are left out, as OpenCV's `resize` does.
 pub fn cover(inner: u32, out: u32) -> Vec<f32> {
     let scale = 1.0 / (f64::from(out) / f64::from(inner));
     let last = f64::from(inner - 1);
@@ -57,10 +59,11 @@ pub fn cover(inner: u32, out: u32) -> Vec<f32> {
         .collect()
 }
 
-/// The window over which the equations are averaged: `2 · (size / 2) + 1` weights.
+/// The weights of the window over which the equations are averaged: `2 · (size / 2) + 1` weights.
 ///
-/// A box has weights of `1 / size²` in both directions together, so of `1 / size` here; an even size has one sample more
-/// than its weights account for, as in OpenCV. The Gaussian has a sigma of `0.3 · (size / 2)`. The size is at least 2.
+/// A box has weights of `1 / size²` in both directions together, so of `1 / size` here; an even size has one sample
+/// more than its weights account for, as in OpenCV. The Gaussian has a sigma of `0.3 · (size / 2)`. The size is at
+/// least 2.
 pub fn window(size: u32, gaussian: bool) -> Vec<f32> {
     let radius = size / 2;
     let taps = 2 * radius + 1;
@@ -71,7 +74,7 @@ pub fn window(size: u32, gaussian: bool) -> Vec<f32> {
 }
 
 /// The window for a kernel that reads four samples at once, from the given number of samples before the centre on:
-/// zeros, the weights, and zeros up to a multiple of four.
+/// zeros, the weights, then zeros up to a multiple of four.
 pub fn window_from(window: &[f32], before: usize) -> Vec<f32> {
     let mut padded = vec![0.0; before - window.len() / 2];
     padded.extend(window);
@@ -94,8 +97,8 @@ pub struct Applicability {
     pub inv_xy: f32,
 }
 
-/// The applicability for a kernel that reads four samples at once, from the given number of samples before the centre on:
-/// four samples of g, four of x g, four of x² g, then the next, with zeros around them as in [`window_from`].
+/// The applicability for a kernel that reads four samples at once, from the given number of samples before the centre
+/// on: four samples of g, four of x g, four of x² g, then the next, with zeros around them as in [`window_from`].
 pub fn applicability_from(weights: &[f32], before: usize) -> Vec<f32> {
     let power = |n: usize| -> Vec<f32> {
         let own: Vec<f32> = weights.as_chunks::<4>().0.iter().map(|four| four[n]).collect();
@@ -111,7 +114,7 @@ pub fn applicability_from(weights: &[f32], before: usize) -> Vec<f32> {
 
 /// The Gaussian applicability of the given radius and sigma, for the basis 1, x, y, x², y², xy.
 ///
-/// With m₂ and m₄ its moments, the normal matrix falls apart into m₂ for x and y, m₂² for xy, and the 3×3 block
+/// With m₂ and m₄ its moments, the normal matrix decomposes into m₂ for x and y, m₂² for xy, and the 3×3 block
 /// `[1 m₂ m₂; m₂ m₄ m₂²; m₂ m₂² m₄]` for 1, x², y², whose inverse has the closed form below. A sigma below the smallest
 /// `f32` step stands for `0.3 · radius`.
 pub fn applicability(radius: u32, sigma: f64) -> Applicability {

@@ -1,10 +1,10 @@
-//! Made-up pictures for the comparison of the two sides of a kernel.
+//! Synthetic images for the comparison of the two sides of a kernel.
 
 use crate::frame::Size;
 use crate::kernel::Case;
 use crate::plan::pack;
 
-/// What a made-up picture looks like.
+/// The content of a synthetic image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
     /// One value everywhere.
@@ -13,18 +13,18 @@ pub enum Fill {
     Textured,
     /// The ends of the legal range, side by side.
     Extreme,
-    /// Textured, with one sample in fifty that is not a number.
+    /// Textured, with one sample in fifty NaN.
     Nan,
 }
 
 impl Fill {
-    /// All of them.
+    /// All contents.
     pub const ALL: &'static [Self] = &[Self::Flat, Self::Textured, Self::Extreme, Self::Nan];
 
-    /// Those that hold numbers only, for kernels whose inputs the kernel before keeps so.
+    /// The contents without NaN, for kernels whose inputs never contain it.
     pub const NUMBERS: &'static [Self] = &[Self::Flat, Self::Textured, Self::Extreme];
 
-    /// The next value of a picture whose legal values are from `low` to `high`.
+    /// The next value of an image whose legal values are from `low` to `high`.
     fn value(self, random: &mut Random, low: f32, high: f32) -> f32 {
         let share = random.next();
         match self {
@@ -43,7 +43,7 @@ impl Fill {
 pub struct Random(u32);
 
 impl Random {
-    /// Begins anew; equal seeds give equal numbers.
+    /// Starts a sequence; equal seeds give equal numbers.
     pub fn new(seed: u32) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9) | 1)
     }
@@ -58,20 +58,20 @@ impl Random {
     }
 }
 
-/// A picture of several channels with values from `low` to `high`, its rows' surplus filled as it should be.
+/// An image of several channels with values from `low` to `high`; the surplus of each row repeats its last pixel.
 pub fn planes(size: Size, channels: usize, fill: Fill, [low, high]: [f32; 2], seed: u32) -> Vec<f32> {
     let mut random = Random::new(seed);
     let rows = Size::new(size.width, channels as u32 * size.height);
     pack::padded_groups(rows, |_, _| [fill.value(&mut random, low, high)])
 }
 
-/// A picture of four values a pixel, side by side in memory, each with its own range.
+/// An image of four values per pixel, side by side in memory, each with its own range.
 pub fn quads(size: Size, fill: Fill, ranges: [[f32; 2]; 4], seed: u32) -> Vec<f32> {
     let mut random = Random::new(seed);
     pack::padded_groups(size, |_, _| ranges.map(|[low, high]| fill.value(&mut random, low, high)))
 }
 
-/// One case a fill for kernels that read one gray picture, then tables. `rows` are the row lengths of the outputs.
+/// One case per content for kernels that read one gray image, then tables. `rows` are the row lengths of the outputs.
 pub fn gray_cases(
     size: Size,
     fills: &[Fill],
@@ -87,7 +87,7 @@ pub fn gray_cases(
     })
 }
 
-/// One case a fill, its inputs as `inputs` makes them. `rows` are the row lengths of the outputs.
+/// One case per content, with the inputs that `inputs` makes. `rows` are the row lengths of the outputs.
 pub fn cases(
     fills: &[Fill],
     params: &[u8],

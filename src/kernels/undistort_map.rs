@@ -1,11 +1,11 @@
-//! Where each pixel of an ideal, turned picture lies in the raw one, and how far what is there is to be trusted.
+//! The map of undistortion: the place of each pixel of an ideal, rotated image in the raw one, and the certainty there.
 //!
-//! Undistortion and derotation in one: [`super::remap`] reads the raw picture once at these places.
+//! Undistortion and derotation in one: [`super::remap`] samples the raw image once at these places.
 //!
 //! The certainty is the mask read between pixels, with nothing outside the frame. It falls to 0 over the pixel around
-//! the frame, and over the last hundredth of r² before the lens stops to be one to one: a certainty with steps would
-//! leave it to rounding on which side of them a place lies, and no bound could hold between two executors. What is seen
-//! nowhere has a certainty of 0 and a place somewhere in the frame.
+//! the frame, and over the last hundredth of r² within which the lens is one to one: a certainty with steps would leave
+//! it to rounding on which side of them a place lies, and no bound could hold between two executors. A direction that
+//! the raw image does not show has a certainty of 0 and some place in the frame.
 
 use super::bearings::{rows, turned};
 use super::lens::{bilinear, clamp_to_frame, distort};
@@ -25,9 +25,9 @@ params! {
         width: u32,
         /// Rows of the result.
         height: u32,
-        /// Pixels in a row of the raw picture.
+        /// Pixels in a row of the raw image.
         in_width: u32,
-        /// Rows of the raw picture.
+        /// Rows of the raw image.
         in_height: u32,
         /// Focal lengths of the result's pinhole.
         out_focal: [f32; 2],
@@ -43,7 +43,7 @@ params! {
         lens_b: [f32; 4],
         /// The r² up to which the lens is one to one, and one over the part of it where the certainty falls.
         limit: [f32; 2],
-        /// The middle of the raw picture.
+        /// The centre of the raw image.
         middle: [f32; 2],
         /// Pixels within its border over which the certainty grows to the mask's.
         margin: [f32; 2],
@@ -55,9 +55,9 @@ params! {
 }
 
 impl Params {
-    /// From the raw camera to an ideal one. The lens of `out` is not looked at: an ideal camera has none.
+    /// The map from an ideal camera to the raw one. The lens of `out` is ignored: an ideal camera has none.
     ///
-    /// Looks for the radius up to which the lens is one to one, which takes a tenth of a millisecond.
+    /// It computes the radius up to which the lens is one to one, which takes a tenth of a millisecond.
     pub fn new(out: &Camera, raw: &Camera) -> Self {
         let pair = |[a, b]: [f64; 2]| [a as f32, b as f32];
         let [k1, k2, p1, p2, k3, k4, k5, k6] = raw.lens.coefficients.map(|c| c as f32);
@@ -82,7 +82,7 @@ impl Params {
         }
     }
 
-    /// The same with a certainty that grows over this many pixels within the raw picture's border.
+    /// The same with a certainty that grows over this many pixels within the raw image's border.
     pub fn with_margin(self, margin_px: f32) -> Self {
         Self { margin: [margin_px; 2], ..self }
     }
@@ -130,7 +130,7 @@ fn reference(p: &Params, motion: &[f32], mask: &[f32], map: &mut [f32], certaint
                 let (map_x, map_y) = map.split_at_mut(stride);
                 let y = ((band.y0 + i) as f32 - p.out_centre[1]) / p.out_focal[1];
                 for x0 in (0..width).step_by(BLOCK) {
-                    // Whole blocks, so that the compiler makes vectors of them.
+                    // Whole blocks, so that the compiler vectorizes them.
                     let mut blocks = [[0.0; BLOCK]; 3];
                     #[allow(clippy::needless_range_loop, reason = "three arrays are filled at once")]
                     for i in 0..BLOCK {
@@ -155,11 +155,11 @@ fn reference(p: &Params, motion: &[f32], mask: &[f32], map: &mut [f32], certaint
     );
 }
 
-/// Pixels worked on at a time.
+/// Number of pixels per block.
 const BLOCK: usize = 32;
 
-/// Where in the raw frame a place of the result's plane lies, and how far it is seen at all. Both sides of every choice are
-/// computed: branches would keep the compiler from making vectors of it.
+/// The place in the raw frame of a place in the result's plane, and its visibility, 0 to 1. Both sides of every choice
+/// are computed: branches would prevent vectorization.
 #[inline(always)]
 fn locate(p: &Params, motion: &[[f32; 4]; 4], last: [f32; 2], [x, y]: [f32; 2]) -> [f32; 3] {
     let (place, share) = ideal(p, turned(motion, [x, y, 1.0]));
@@ -172,8 +172,8 @@ fn locate(p: &Params, motion: &[[f32; 4]; 4], last: [f32; 2], [x, y]: [f32; 2]) 
     [clamp_to_frame(u, last[0]), clamp_to_frame(v, last[1]), share * covered(u, 0) * covered(v, 1)]
 }
 
-/// Where an ideal pinhole shows a ray, and 0 to 1 how far it is seen at all. A ray that the lens does not show is put on
-/// the circle where that begins, so that rounding does not make it jump.
+/// The place at which an ideal pinhole shows a ray, and its visibility, 0 to 1. A ray that the lens does not show is
+/// put on the circle where that begins, so that rounding does not make it jump.
 #[inline(always)]
 fn ideal(p: &Params, [x, y, z]: [f32; 3]) -> ([f32; 2], f32) {
     let [limit, fall] = p.limit;
@@ -188,8 +188,8 @@ fn ideal(p: &Params, [x, y, z]: [f32; 3]) -> ([f32; 2], f32) {
     if shown { ([in_x, in_y], share) } else { ([on_x, on_y], 0.0) }
 }
 
-/// A place more than a pixel outside the frame, drawn to its middle until it is that near. Holding each coordinate by
-/// itself would leave one of them to rounding where the other is far outside.
+/// A place more than a pixel outside the frame is moved towards its centre until it is one pixel outside. Clamping each
+/// coordinate by itself would leave one of them to rounding where the other is far outside.
 #[inline(always)]
 fn near(p: &Params, [u, v]: [f32; 2]) -> [f32; 2] {
     let [c_u, c_v] = p.middle;
@@ -201,7 +201,7 @@ fn near(p: &Params, [u, v]: [f32; 2]) -> [f32; 2] {
     [if outside { drawn[0] } else { u }, if outside { drawn[1] } else { v }]
 }
 
-/// A value clamped to the range 0 to 1. What is not a number is not trusted.
+/// A value clamped to the range 0 to 1. NaN becomes 0.
 #[inline(always)]
 fn clamp_unit(value: f32) -> f32 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }

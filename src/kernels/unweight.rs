@@ -1,5 +1,5 @@
-//! A picture that was smoothed together with its certainty, divided by it: the smoothed picture of what is known, and 0
-//! where next to nothing is (Knutsson and Westin, Normalized and differential convolution, CVPR 1993).
+//! Divides an image that was smoothed together with its certainty by that certainty: the smoothed image of the known
+//! pixels, and 0 where next to none is known (Knutsson and Westin, Normalized and differential convolution, CVPR 1993).
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -7,7 +7,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture.
+    /// Shape of the image.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -16,7 +16,7 @@ params! {
     }
 }
 
-/// Below this certainty a pixel is not known.
+/// Below this certainty a pixel is unknown.
 const LEAST: f32 = 1e-3;
 
 kernel!(

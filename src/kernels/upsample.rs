@@ -1,4 +1,4 @@
-//! A coarser level's flow read bilinearly at this level's pixels and scaled to its pixel size.
+//! Samples a coarser level's flow bilinearly at this level's pixels and scales it to their size.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::tables;
@@ -17,7 +17,7 @@ params! {
         in_width: u32,
         /// Rows of the coarser level.
         in_height: u32,
-        /// What displacements are multiplied with.
+        /// The factor of the displacements.
         scale: f32,
     }
 }

@@ -1,5 +1,5 @@
-//! The second picture read where the flow so far points, and how far each place is shown: by the second picture's certainty,
-//! and not at all outside it.
+//! Samples the second image where the flow so far points, and the visibility of each place: the second image's
+//! certainty, and 0 outside it.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -7,7 +7,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the pictures.
+    /// Shape of the images.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -61,7 +61,7 @@ fn reference(
     });
 }
 
-/// Both planes between the four pixels around a place inside.
+/// Both planes, sampled bilinearly at a place inside the image.
 #[inline(always)]
 fn between(
     second: &[f32],

@@ -1,10 +1,10 @@
-//! Each pixel's normal equations for its displacement, weighted by how certain the expansions of both frames are.
+//! Each pixel's normal equations for its displacement, weighted by the certainty of both frames' expansions.
 //!
 //! As [`super::normal_equations`], with the equations weighted by the certainty of the first frame's pixel times that
-//! of the place in the second frame. Where the second frame has no pixel there, that counts as certain as the first's:
-//! equations of inside and outside then keep their proportion when all certainty is halved. The second frame is read by
-//! normalised interpolation, each of the four pixels around a place by its bilinear weight times its certainty, so that
-//! those without an expansion do not draw it towards zero.
+//! of the place in the second frame. A place outside the second frame counts with the first frame's certainty: the
+//! proportion of equations inside and outside then stays the same when all certainty is halved. The second frame is
+//! sampled by normalised interpolation, each of the four pixels around a place by its bilinear weight times its
+//! certainty, so that those without an expansion do not draw it towards zero.
 //!
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 3; Knutsson and Westin,
 //! Normalized and differential convolution, CVPR 1993.
@@ -32,7 +32,7 @@ kernel!(
     },
 );
 
-/// Equations of less certainty are left out, for their expansion is a quotient of two numbers near zero.
+/// Equations of less certainty are left out, because their expansion is a quotient of two numbers near zero.
 const LEAST_CERTAINTY: f32 = 1e-6;
 
 #[allow(clippy::too_many_arguments, reason = "one for each buffer, as in the shader")]

@@ -1,6 +1,6 @@
-//! Columns of five channels averaged by a symmetric window: the vertical half of the neighbourhood's sum.
+//! Averages columns of five channels by a symmetric window: the vertical half of the neighbourhood's sum.
 //!
-//! The equations are numbers: [`normal_equations`](super::normal_equations) sees to it.
+//! The equations are never NaN: [`normal_equations`](super::normal_equations) guarantees it.
 
 use super::parallel_rows::{Split, bands, clamp_index, dimensions, weighted_sum};
 use super::tables;
@@ -9,7 +9,7 @@ use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the picture and of the window.
+    /// Shape of the image and of the window.
     struct Params {
         /// Pixels in a row.
         width: u32,
@@ -37,7 +37,7 @@ fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32])
     let (_, height, stride) = dimensions(p.width, p.height);
     let radius = p.radius as isize;
     let window = &window[..2 * p.radius as usize + 1];
-    // A band is worked through in strips of columns, so narrow that the rows under the window stay in the nearest cache.
+    // A band is processed in strips of columns, so narrow that the rows under the window stay in the nearest cache.
     const STRIP: usize = 512;
     bands(columns, &mut [], Split::rows_of(5 * stride), #[inline(always)] |band| {
         for x0 in (0..5 * stride).step_by(STRIP) {

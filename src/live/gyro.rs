@@ -1,26 +1,27 @@
 use crate::imu::GyroSample;
 
-/// A gyro's log, handed over in its own order and not before its time, as a live gyro would.
+/// A gyro's log, delivered in its own order and not before its time, as by a live gyro.
 #[derive(Clone, Debug)]
 pub struct GyroFeed {
     samples: Vec<GyroSample>,
     offset_s: f64,
     next: usize,
-    /// When the last sample that was handed over came.
+    /// The arrival time of the last delivered sample.
     reached_s: f64,
 }
 
 impl GyroFeed {
-    /// A feed of samples in the order in which they came. `offset_s` is what is added to their times to get the frames', as
-    /// in [`GyroConfig::time_offset_s`](crate::imu::GyroConfig::time_offset_s).
+    /// Creates a feed of samples in the order of their arrival. `offset_s` is added to their times to get the frames'
+    /// time, as in [`GyroConfig::time_offset_s`](crate::imu::GyroConfig::time_offset_s).
     pub fn new(samples: Vec<GyroSample>, offset_s: f64) -> Self {
         Self { samples, offset_s, next: 0, reached_s: f64::NEG_INFINITY }
     }
 
-    /// The samples that came up to a frame's time and one after it, without those that were handed over before. With them
-    /// the rotation until that frame is known.
+    /// The samples up to a frame's time and one after it, without those that were delivered before. They determine the
+    /// rotation until that frame.
     ///
-    /// Samples that are not finite, or out of order, are handed over, too: the pipeline's gyro says which frames they spoil.
+    /// Samples that are not finite, or out of order, are delivered, too: the pipeline's gyro finds which frames they
+    /// affect.
     pub fn until(&mut self, time_s: f64) -> &[GyroSample] {
         let begin = self.next;
         while let Some(sample) = self.samples.get(self.next).filter(|_| !(self.reached_s > time_s)) {
@@ -32,8 +33,9 @@ impl GyroFeed {
         &self.samples[begin..self.next]
     }
 
-    /// When a sample came, in the frames' time. That is not always what it states: one wild time must not hold up the samples
-    /// behind it, so it is the median of its own time and its neighbours' (the earlier of two).
+    /// The arrival time of a sample, in the frames' time. It may differ from the sample's own time: a single outlier
+    /// must not hold up the samples behind it, so it is the median of the sample's time and its neighbours' (the
+    /// earlier of two).
     fn arrival_s(&self, at: usize) -> Option<f64> {
         let around = at.saturating_sub(1)..(at + 2).min(self.samples.len());
         let mut times: Vec<f64> =
@@ -62,7 +64,8 @@ mod tests {
     fn samples_come_up_to_one_after_the_frame_and_once() {
         let mut feed = feed(&[0.0, 0.1, 0.2, 0.3], 1.0);
         let mut times = |until_s: f64| -> Vec<f64> { feed.until(until_s).iter().map(|s| s.time_s).collect() };
-        // A sample is timed by the median of itself and its neighbours, so the last one counts as the one before it.
+        // A sample's arrival time is the median of itself and its neighbours, so the last one gets the time of the
+        // previous one.
         assert_eq!(times(1.05), [0.0, 0.1]);
         assert!(times(1.05).is_empty());
         assert_eq!(times(1.1), [0.2]);

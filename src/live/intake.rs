@@ -6,15 +6,15 @@ use super::{FrameTimes, LatestFrame, TimedFrame};
 use crate::error::{Error, Result};
 use crate::frame::Image;
 
-/// Longer than any recording lasts: what a wild frame time asks for is not waited for any longer than this.
+/// Longer than any recording: the longest wait for a frame, whatever its time says.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 3600);
 
-/// Where frames come from.
+/// A source of frames.
 pub trait FrameSource {
-    /// Reads the next frame into `image`, whose memory may be used again. Returns false after the last one.
+    /// Reads the next frame into `image`, whose memory may be reused. Returns false after the last frame.
     ///
     /// # Errors
-    /// Whatever keeps the source from giving its next frame. It is not asked again after that.
+    /// Any error that prevents the source from reading its next frame. It is not called again after that.
     fn next_frame(&mut self, image: &mut Image) -> Result<bool>;
 }
 
@@ -25,7 +25,7 @@ impl FrameSource for crate::io::Frames {
     }
 }
 
-/// A source whose frames have their times.
+/// A source of frames with times.
 #[derive(Debug)]
 pub struct TimedFrames<S> {
     source: S,
@@ -52,7 +52,7 @@ impl<S: FrameSource> TimedFrames<S> {
     /// Reads the next frame. Returns false after the last one.
     ///
     /// # Errors
-    /// What the source fails with, and [`Error::Format`] if there are more or fewer frames than times in a list.
+    /// The source's errors, and [`Error::Format`] if there are more or fewer frames than times in a list.
     pub fn next_frame(&mut self, frame: &mut TimedFrame) -> Result<bool> {
         if !self.source.next_frame(&mut frame.image)? {
             self.times.check_end(self.frames)?;
@@ -65,17 +65,17 @@ impl<S: FrameSource> TimedFrames<S> {
     }
 }
 
-/// When a source's frames are there.
+/// When a source's frames become available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// As soon as they are read: the source is a live one.
     Source,
-    /// At their times, as from a live camera: the source is a recording. The first frame's time is the time of the call of
-    /// [`Intake::latest`].
+    /// At their times, as from a live camera: the source is a recording. The first frame becomes available at the call
+    /// of [`Intake::latest`].
     Times,
 }
 
-/// Frames with their times, each in turn or the newest.
+/// An intake of frames with times: every frame in turn, or the newest one.
 #[derive(Debug)]
 pub struct Intake<S>(Kind<S>);
 
@@ -91,7 +91,7 @@ impl<S: FrameSource> Intake<S> {
         Self(Kind::Each(frames))
     }
 
-    /// The next frame. Returns false after the last one. `frame` is one of before, so that its memory is used again.
+    /// Gets the next frame. Returns false after the last one. `frame` may be an earlier frame, whose memory is reused.
     ///
     /// # Errors
     /// As [`TimedFrames::next_frame`]; [`Error::Io`] if the source panicked on its thread.
@@ -102,7 +102,7 @@ impl<S: FrameSource> Intake<S> {
         }
     }
 
-    /// Frames that were replaced by newer ones before they were asked for.
+    /// The number of frames that were replaced by newer ones before they were requested.
     pub fn dropped(&self) -> u64 {
         match &self.0 {
             Kind::Each(_) => 0,
@@ -112,15 +112,15 @@ impl<S: FrameSource> Intake<S> {
 }
 
 impl<S: FrameSource + Send + 'static> Intake<S> {
-    /// The newest frame: a thread reads the frames, and those that nobody asked for in time are dropped. `first` is the frame
-    /// that was read before, from which [`Pace::Times`] counts.
+    /// The newest frame: a thread reads the frames, and frames that are not requested in time are dropped. `first` is
+    /// the frame that was read before, from which [`Pace::Times`] counts.
     ///
     /// The thread ends with its source, or with the first frame that it has read after the intake is dropped.
     pub fn latest(mut frames: TimedFrames<S>, first: &TimedFrame, pace: Pace) -> Self {
         let latest = Arc::new(LatestFrame::default());
         let reading = Reading(Arc::downgrade(&latest));
         let (begin, from_s) = (Instant::now(), first.time_s);
-        // Never joined: it may be waiting for a frame of a stream when everybody else is done.
+        // Never joined: it may still wait for a frame of a stream when the rest of the program is done.
         thread::spawn(move || {
             let mut frame = TimedFrame::default();
             let end = loop {
@@ -141,7 +141,7 @@ impl<S: FrameSource + Send + 'static> Intake<S> {
     }
 }
 
-/// The reading thread's hold on the place of the newest frame.
+/// The reading thread's handle of the newest frame.
 struct Reading(Weak<LatestFrame>);
 
 impl Reading {
@@ -154,14 +154,14 @@ impl Reading {
 
 impl Drop for Reading {
     fn drop(&mut self) {
-        // Otherwise whoever waits for a frame would wait for ever.
+        // Otherwise a thread that waits for a frame would wait forever.
         if thread::panicking() {
             self.end(Err(Error::io("frame source", std::io::Error::other("its thread panicked"))));
         }
     }
 }
 
-/// Sleeps until a number of seconds after the beginning.
+/// Sleeps until this many seconds after the start.
 fn wait_until(begin: Instant, after_s: f64) -> Instant {
     let after = Duration::try_from_secs_f64(after_s.max(0.0)).unwrap_or(LONGEST_WAIT).min(LONGEST_WAIT);
     let due = begin.checked_add(after).unwrap_or(begin);
@@ -176,7 +176,7 @@ mod tests {
     use crate::live::FrameRate;
     use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 
-    /// Gives a frame for each message, fails at one that says so, and says when it is dropped.
+    /// Gives a frame per message, fails or panics at a message that says so, and reports when it is dropped.
     struct Fed(Receiver<&'static str>, #[allow(dead_code, reason = "dropped with it")] Sender<()>);
 
     impl FrameSource for Fed {

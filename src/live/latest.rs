@@ -4,27 +4,27 @@ use std::time::Instant;
 use crate::error::{Error, Result};
 use crate::frame::Image;
 
-/// A frame, its place in the source, and its time.
+/// A frame, its number in the source, and its time.
 #[derive(Clone, Debug)]
 pub struct TimedFrame {
-    /// The picture.
+    /// The image.
     pub image: Image,
     /// The frame's number in its source, from 0.
     pub number: u64,
-    /// When it was taken: the middle of its exposure, seconds of the camera's clock.
+    /// The middle of its exposure, in seconds of the camera's clock.
     pub time_s: f64,
-    /// When it was there to be used.
+    /// When it became available.
     pub arrived: Instant,
 }
 
-/// An empty picture, for a source to fill.
+/// An empty image, for a source to fill.
 impl Default for TimedFrame {
     fn default() -> Self {
         Self { image: Image::default(), number: 0, time_s: 0.0, arrived: Instant::now() }
     }
 }
 
-/// A place for one waiting frame between two threads. A frame that comes while another one waits replaces it, and the
+/// A slot for one waiting frame between two threads. A frame that arrives while another one waits replaces it, and the
 /// replaced one counts as dropped.
 ///
 /// Frames are swapped in and out, so that in steady state their memory is reused.
@@ -49,8 +49,8 @@ impl LatestFrame {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a frame in the place of one that may still wait there. `frame` is an older frame afterwards, whose memory can be
-    /// filled again.
+    /// Puts a frame into the slot, in place of one that may still wait there. Afterwards `frame` is an older frame,
+    /// whose memory can be reused.
     pub fn put(&self, frame: &mut TimedFrame) {
         let mut state = self.state();
         std::mem::swap(&mut state.frame, frame);
@@ -60,18 +60,18 @@ impl LatestFrame {
         self.changed.notify_one();
     }
 
-    /// Says that no frame comes any more, or why not. A frame that waits is still taken.
+    /// Ends the frames, with an error if they ended with one. A waiting frame can still be taken.
     pub fn end(&self, end: Result<()>) {
         let mut state = self.state();
         (state.ended, state.error) = (true, end.err());
         self.changed.notify_all();
     }
 
-    /// Waits for a frame that has not been taken yet. `frame` is swapped with it, so that its memory is used again. Returns
-    /// false after the last one.
+    /// Waits for a frame that has not been taken yet. It is swapped with `frame`, whose memory is reused. Returns false
+    /// after the last frame.
     ///
     /// # Errors
-    /// What [`LatestFrame::end`] was given, once.
+    /// The error given to [`LatestFrame::end`], once.
     pub fn take(&self, frame: &mut TimedFrame) -> Result<bool> {
         let mut state = self.state();
         loop {
@@ -86,7 +86,7 @@ impl LatestFrame {
         }
     }
 
-    /// Frames that were replaced before they were taken.
+    /// The number of frames that were replaced before they were taken.
     pub fn dropped(&self) -> u64 {
         self.state().dropped
     }

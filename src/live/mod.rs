@@ -1,4 +1,4 @@
-//! Frames and gyro samples as they come: each frame in turn or the newest one, their times, and a gyro's log in step with them.
+//! Live intake: frames in turn or the newest one, their times, and a gyro's samples in step with them.
 //!
 //! A camera's thread puts frames into a [`LatestFrame`], and the thread that computes takes the newest:
 //!

@@ -14,12 +14,13 @@ impl FrameRate {
     /// 30 frames per second, which is assumed where a source states none.
     pub const DEFAULT: Self = Self { frames: 30.0, seconds: 1.0 };
 
-    /// The rate that a video's header states, as `io::Frames::rate` gives it: frames and seconds, both over 0.
+    /// The rate of a video's header, as `io::Frames::rate` returns it: frames and seconds, both over 0.
     pub fn of_fraction((frames, seconds): (u32, u32)) -> Self {
         Self { frames: f64::from(frames), seconds: f64::from(seconds) }
     }
 
-    /// Frames and seconds for a video's header; to a thousandth of a frame per second where the rate is no such fraction.
+    /// Frames and seconds for a video's header; rounded to a thousandth of a frame per second if the rate is not such a
+    /// fraction.
     pub fn fraction(self) -> (u32, u32) {
         let whole = |value: f64| value.fract() == 0.0 && value <= f64::from(u32::MAX);
         if whole(self.frames) && whole(self.seconds) {
@@ -44,7 +45,7 @@ impl FromStr for FrameRate {
     }
 }
 
-/// The frames' times: an even rate, or a list.
+/// The frames' times: a constant rate, or a list.
 #[derive(Clone, Debug)]
 pub struct FrameTimes {
     rate: FrameRate,
@@ -53,7 +54,7 @@ pub struct FrameTimes {
 }
 
 impl FrameTimes {
-    /// Times at an even rate, from `start_s` on.
+    /// Times at a constant rate, from `start_s` on.
     pub fn even(rate: FrameRate, start_s: f64) -> Self {
         Self { rate, listed: None, start_s }
     }
@@ -62,7 +63,7 @@ impl FrameTimes {
     /// list's name for error messages.
     ///
     /// # Errors
-    /// [`Error::Format`] for an empty list, or one that is not as long as there are `frames`, where that is known.
+    /// [`Error::Format`] for an empty list, or one whose length is not the number of `frames`, if that is known.
     pub fn listed(
         path: impl AsRef<Path>,
         times_s: Vec<f64>,
@@ -86,10 +87,10 @@ impl FrameTimes {
         self.rate
     }
 
-    /// The time of a frame, seconds.
+    /// The time of a frame in seconds.
     ///
     /// # Errors
-    /// [`Error::Format`] if a list has none for it.
+    /// [`Error::Format`] if a list has no time for it.
     pub fn of(&self, number: u64) -> Result<f64> {
         let time_s = match &self.listed {
             None => number as f64 * self.rate.seconds / self.rate.frames,
@@ -102,7 +103,7 @@ impl FrameTimes {
         Ok(self.start_s + time_s)
     }
 
-    /// Checks that a list has no time left over after a number of frames.
+    /// Checks that a list has no more times than this number of frames.
     ///
     /// # Errors
     /// [`Error::Format`] if it has.

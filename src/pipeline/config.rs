@@ -8,40 +8,41 @@ use crate::imu::GyroConfig;
 use crate::sphere::{Alarm, ExtraOutputs, Sphere};
 use crate::stream::StreamConfig;
 
-/// How a [`Pipeline`](super::Pipeline) works.
+/// The configuration of a [`Pipeline`](super::Pipeline).
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PipelineConfig {
     /// The estimator of the flow and its parameters.
     pub algorithm: Algorithm,
-    /// How the frames' pixels are stored.
+    /// The pixel format of the frames.
     pub format: PixelFormat,
-    /// Whether what the frame does not show, and what the mask hides, is left out of the estimator's neighbourhoods too,
-    /// at about twice the time.
+    /// Whether pixels outside the frame and pixels that the mask hides are excluded from the estimator's neighbourhoods
+    /// too. It takes about twice the time.
     pub certainty: bool,
-    /// Whether the flow is brought to the host.
+    /// Whether the flow is read back to the host.
     pub read_flow: bool,
-    /// How the stream of frames is run. A frame that follows a dropped one has an invalid cue.
+    /// The configuration of the stream. A frame that follows a dropped one has an invalid cue.
     pub stream: StreamConfig,
-    /// How the flow on the view sphere is summed up.
+    /// How the flow on the view sphere is aggregated.
     pub sphere: Sphere,
-    /// The pinhole whose pictures the flow is computed of, of any size. None for what the camera's own frame shows
-    /// without a gap, in its size.
+    /// The ideal camera: a pinhole without a lens, of any size, in whose image the flow is computed. None for the
+    /// largest view that the raw frame fills, at its size.
     pub ideal: Option<Camera>,
-    /// How far each pixel of the raw frame is to be trusted, 0 to 1: 0 where the aircraft itself is seen. None for 1.
+    /// The certainty of each pixel of the raw frame, 0 to 1, in a plane of the camera's size: 0 where the aircraft
+    /// itself is seen. None for 1 everywhere.
     pub mask: Option<Plane>,
-    /// The gyro. None if there is none: then the camera's turn stays in the flow.
+    /// The gyro. Without one (None) the camera's rotation stays in the flow.
     pub gyro: Option<GyroConfig>,
-    /// What is read beside the sectors.
+    /// The outputs that are read back beside the sectors.
     pub fields: ExtraOutputs,
-    /// What is a threat.
+    /// The criteria of threats and alarms.
     pub alarm: Alarm,
-    /// Frames further apart make no pair, in seconds, above 0.
+    /// The longest time between paired frames, in seconds, above 0.
     pub max_interval_s: f64,
-    /// A cue is invalid if its flow shows a turn faster than this beside what the gyro tells, in rad/s, above 0. Infinite
-    /// to look at none.
+    /// The highest residual rotation of a valid cue, in rad/s, above 0: the rotation that the flow shows and the gyro
+    /// does not. Infinite for no check.
     pub max_remaining_rad_s: f64,
-    /// A cue is invalid if less of the view is trusted, 0 to 1.
+    /// The least coverage of a valid cue: the share of the view whose flow is trusted, 0 to 1.
     pub least_coverage: f64,
 }
 
@@ -91,12 +92,12 @@ impl PipelineConfig {
         Ok(())
     }
 
-    /// Whether a turn that the flow shows beside the gyro's is looked for.
+    /// Whether the residual rotation is checked.
     pub(super) fn watches_turn(&self) -> bool {
         self.gyro.is_some() && self.max_remaining_rad_s.is_finite()
     }
 
-    /// The pinhole whose pictures the flow is computed of.
+    /// The pinhole whose images the flow is computed of.
     pub(crate) fn ideal(&self, camera: &Camera) -> Result<Camera> {
         match &self.ideal {
             None if camera.lens == Lens::NONE => Ok(*camera),

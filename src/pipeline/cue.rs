@@ -1,4 +1,4 @@
-//! What a pipeline says of a frame.
+//! The cue: a pipeline's result for a frame.
 
 use std::time::Duration;
 
@@ -8,51 +8,55 @@ use crate::frame::FlowField;
 use crate::imu::GyroFault;
 use crate::sphere::{Heading, Sectors, Threat};
 
-/// What a pipeline says of a frame. It borrows from the pipeline; [`Cue::into_owned`] makes a copy that does not.
+/// A pipeline's result for a frame. It borrows from the pipeline; [`Cue::into_owned`] makes a copy that does not.
 #[derive(Clone, Copy, Debug)]
 pub struct Cue<'a> {
     /// The frame's number, counted from 0 over the pipeline's life.
     pub frame: u64,
-    /// The frame's time, as it was given.
+    /// The frame's time in seconds, as the caller gave it.
     pub time_s: f64,
-    /// Seconds since the frame before.
+    /// Seconds since the previous frame. None for a first frame.
     pub interval_s: Option<f64>,
-    /// Why the cue is not to be used; none if it is. What else is there may still be looked at.
+    /// The reason why the cue must not be used; None if it is valid. The other fields of an invalid cue are for
+    /// diagnosis only.
     pub invalid: Option<Invalid>,
-    /// How the camera turned since the frame before, where a gyro tells.
+    /// The camera's rotation since the previous frame, where a gyro measured it: it takes a bearing in the camera's
+    /// frame at this exposure into its frame at the previous one.
     pub prev_from_cur: Option<DMat3>,
-    /// The camera's angular rate that its flow shows beside what the gyro told, rad/s in the camera's frame: a bias. None
-    /// without a gyro, and where too little is seen to tell.
+    /// The residual rotation: the camera's angular rate that the flow shows and the gyro does not, rad/s in the
+    /// camera's frame, such as a gyro's bias. None without a gyro, and where too little is seen to estimate it.
     pub residual_rotation_rad_s: Option<DVec3>,
-    /// Which way the camera moves.
+    /// The direction in which the camera moves.
     pub heading: Heading,
-    /// What each sector of the view says.
+    /// The sectors of the view.
     pub sectors: &'a Sectors,
-    /// What will be met first, if anything soon.
+    /// The threat that will be met first, if there is one.
     pub threat: Option<Threat>,
-    /// The flow from this frame back to the one before in pixels of the ideal picture, if it is read. With
-    /// [`Derotation::Before`](crate::sphere::Derotation::Before) the camera's turn is not in it.
+    /// The flow from this frame back to the previous one, if it is read: one displacement per pixel of the ideal image,
+    /// in pixels. With [`Derotation::Before`](crate::sphere::Derotation::Before) the camera's rotation is not in it.
     pub flow: Option<&'a FlowField>,
-    /// Nearness rate, divergence, error and confidence of each cell, if [`ExtraOutputs::looming`] asks for them: rows
-    /// of cells, in each row the four channels one after the other, each padded to a multiple of four values. Rates are
-    /// per frame.
+    /// Nearness rate, divergence, standard error of the nearness rate, and confidence of each cell, if
+    /// [`ExtraOutputs::looming`] asks for them. Layout: rows of cells from the top; in each row the four channels one
+    /// after the other, each padded to a multiple of four values. Rates are per frame, confidence is 0 to 1.
     ///
     /// [`ExtraOutputs::looming`]: crate::sphere::ExtraOutputs::looming
     pub looming: Option<&'a [f32]>,
-    /// Confidence, place (2) and rate (2) of each cell, if [`ExtraOutputs::cells`](crate::sphere::ExtraOutputs::cells)
-    /// asks for them: five channels, laid out as [`Cue::looming`].
+    /// Confidence, place (x, y) and rate (ẋ, ẏ) of each cell, if
+    /// [`ExtraOutputs::cells`](crate::sphere::ExtraOutputs::cells) asks for them: five channels, laid out as
+    /// [`Cue::looming`]. Places are in the plane at unit distance from the ideal camera, rates in its units per frame,
+    /// confidence is 0 to 1.
     pub cells: Option<&'a [f32]>,
-    /// The flow on the view sphere of each pixel, if
-    /// [`ExtraOutputs::spherical_flow`](crate::sphere::ExtraOutputs::spherical_flow) asks for it: three channels in
-    /// radians, laid out as [`Cue::looming`] with pixels for cells.
+    /// The flow on the view sphere at each pixel, if
+    /// [`ExtraOutputs::spherical_flow`](crate::sphere::ExtraOutputs::spherical_flow) asks for it: three channels (x, y,
+    /// z of the camera's frame) in radians per frame, laid out as [`Cue::looming`] with pixels in place of cells.
     pub spherical_flow: Option<&'a [f32]>,
-    /// Time from submit until now.
+    /// Time from the submit to the return of the wait.
     pub latency: Duration,
 }
 
 impl Cue<'_> {
-    /// A copy that owns its data, to be kept or sent to another thread. It copies the sectors, and the flow and the fields
-    /// where they are read.
+    /// A copy that owns its data, to keep or to send to another thread. It copies the sectors, and the flow and the
+    /// extra outputs where they are read.
     pub fn into_owned(self) -> OwnedCue {
         OwnedCue {
             frame: self.frame,
@@ -73,7 +77,7 @@ impl Cue<'_> {
     }
 }
 
-/// A [`Cue`] that owns its data. Each field is that of the cue of the same name.
+/// A [`Cue`] that owns its data. Each field is the cue's field of the same name.
 #[derive(Clone, Debug)]
 pub struct OwnedCue {
     /// The frame's number: [`Cue::frame`].
@@ -82,21 +86,21 @@ pub struct OwnedCue {
     pub time_s: f64,
     /// Seconds since the previous frame: [`Cue::interval_s`].
     pub interval_s: Option<f64>,
-    /// Why the cue is not to be used: [`Cue::invalid`].
+    /// The reason why the cue must not be used: [`Cue::invalid`].
     pub invalid: Option<Invalid>,
     /// The camera's rotation since the previous frame: [`Cue::prev_from_cur`].
     pub prev_from_cur: Option<DMat3>,
-    /// The rotation rate that the gyro does not explain, rad/s: [`Cue::residual_rotation_rad_s`].
+    /// The residual rotation, rad/s: [`Cue::residual_rotation_rad_s`].
     pub residual_rotation_rad_s: Option<DVec3>,
     /// The direction of motion: [`Cue::heading`].
     pub heading: Heading,
     /// The sectors of the view: [`Cue::sectors`].
     pub sectors: Sectors,
-    /// What will be met first: [`Cue::threat`].
+    /// The threat that will be met first: [`Cue::threat`].
     pub threat: Option<Threat>,
     /// The flow back to the previous frame, pixels: [`Cue::flow`].
     pub flow: Option<FlowField>,
-    /// The rates of each cell: [`Cue::looming`].
+    /// Nearness rate and divergence of each cell: [`Cue::looming`].
     pub looming: Option<Vec<f32>>,
     /// The flow of each cell: [`Cue::cells`].
     pub cells: Option<Vec<f32>>,
@@ -107,7 +111,7 @@ pub struct OwnedCue {
 }
 
 impl OwnedCue {
-    /// The cue as one that borrows, which is what the other parts of this crate take.
+    /// A borrowing view, as the other parts of this crate take it.
     pub fn cue(&self) -> Cue<'_> {
         Cue {
             frame: self.frame,
@@ -128,47 +132,47 @@ impl OwnedCue {
     }
 }
 
-/// Why a cue is not to be used.
+/// The reason why a cue must not be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, Copy)]
 #[non_exhaustive]
 pub enum Invalid {
-    /// There is no frame before it.
-    #[error("there is no frame before it")]
+    /// There is no previous frame.
+    #[error("no previous frame")]
     First,
-    /// The time between the frames is out of range.
-    #[error("{interval_s:.6} s since the frame before, expected above 0 and at most {limit_s} s")]
+    /// The time between the two frames is out of range.
+    #[error("{interval_s:.6} s since the previous frame, expected above 0 and at most {limit_s} s")]
     Interval {
-        /// Seconds since the frame before.
+        /// Seconds since the previous frame.
         interval_s: f64,
         /// The longest time allowed.
         limit_s: f64,
     },
-    /// The gyro does not say how the camera turned.
+    /// The gyro's samples do not give the rotation between the two frames.
     #[error("gyro: {0}")]
     Gyro(GyroFault),
-    /// The picture is that of the frame before, to the last bit: the camera has stopped giving new ones.
-    #[error("the picture is the one before again")]
+    /// The image equals the previous one bit for bit: the camera delivers no new images.
+    #[error("the image is identical to the previous one")]
     Frozen,
-    /// The flow shows a turn that the gyro has not told.
+    /// The flow shows a rotation that the gyro does not.
     #[error(
-        "the flow turns by {found_rad_s:.3} rad/s beside what the gyro tells, expected at most {most_rad_s}"
+        "the flow shows a rotation of {found_rad_s:.3} rad/s that the gyro does not, expected at most {most_rad_s}"
     )]
     Turn {
-        /// The rate that is left.
+        /// The residual rotation, rad/s.
         found_rad_s: f64,
-        /// The highest that is allowed.
+        /// The limit, [`PipelineConfig::max_remaining_rad_s`](super::PipelineConfig::max_remaining_rad_s).
         most_rad_s: f64,
     },
     /// Too little of the view is trusted.
     #[error("{found:.3} of the view is trusted, expected at least {least}")]
     Coverage {
-        /// The share that is trusted.
+        /// The share of the view whose flow is trusted, 0 to 1.
         found: f64,
-        /// The share that is needed.
+        /// The limit, [`PipelineConfig::least_coverage`](super::PipelineConfig::least_coverage).
         least: f64,
     },
-    /// The frame before was lost, and the flow leads from another one.
-    #[error("the frame before was lost")]
+    /// The previous frame was lost, and the flow leads from an earlier one.
+    #[error("the previous frame was lost")]
     Lost,
 }
 
@@ -187,7 +191,7 @@ impl Invalid {
     }
 }
 
-/// The kinds of [`Invalid`], to count and to send.
+/// The kind of an [`Invalid`], without its values, to count and to send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -213,7 +217,7 @@ impl InvalidKind {
     pub const ALL: [Self; 7] =
         [Self::First, Self::Interval, Self::Gyro, Self::Coverage, Self::Lost, Self::Frozen, Self::Turn];
 
-    /// Its name in lines and JSON: one word in lower case.
+    /// The name in text and JSON: one word in lower case.
     pub const fn name(self) -> &'static str {
         match self {
             Self::First => "first",
@@ -265,7 +269,7 @@ mod tests {
         };
         let text = format!("{cue:?}");
         let owned = sent(cue.into_owned());
-        // What is printed of a cue is every field of it.
+        // `Debug` prints every field of a cue.
         assert_eq!(format!("{:?}", owned.cue()), text);
         assert_eq!(format!("{:?}", owned.clone().cue()), text);
     }

@@ -1,4 +1,4 @@
-//! From raw frames and a gyro to what will be met where and when.
+//! From raw frames and a gyro to cues: time to contact, heading and threats, frame by frame.
 
 mod config;
 mod cue;
@@ -18,10 +18,10 @@ use crate::plan::{Plan, Value};
 use crate::sphere::{self, AlarmFilter, Cameras, Cells, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
 use crate::stream::{Latency, Stats, Stream, Ticket};
 
-/// Frames of a camera go in, each with its time, and the gyro's samples; a [`Cue`] a frame comes out.
+/// Computes a [`Cue`] per frame from a camera's frames, their times and a gyro's samples.
 ///
-/// All per-pixel work is one submission a frame, and only what is asked for is read back. A frame's gyro samples must be
-/// pushed before it is submitted, up to one after the middle of its exposure.
+/// All per-pixel work is one submission per frame, and only the outputs that the configuration asks for are read back.
+/// Push a frame's gyro samples before you submit it, up to one after the middle of its exposure.
 pub struct Pipeline {
     stream: Stream<Submitted>,
     config: PipelineConfig,
@@ -31,25 +31,25 @@ pub struct Pipeline {
     last: Option<Last>,
     sectors: Sectors,
     heading: Heading,
-    /// The time of the frame that the heading is known of.
+    /// The time of the frame that the heading belongs to, seconds.
     heading_time_s: f64,
     given: Option<Heading>,
     headings: HeadingFilter,
     alarms: AlarmFilter,
 }
 
-/// The frame that was submitted last.
+/// The most recently submitted frame.
 #[derive(Clone, Copy)]
 struct Last {
     frame: u64,
-    /// When its picture was taken, be it shown again.
+    /// When its image was taken: of a repeated image, the time of its first appearance.
     time_s: f64,
-    /// Its own time.
+    /// Its own time, as the caller gave it.
     given_s: f64,
     digest: u64,
 }
 
-/// What is known of a frame when it is submitted.
+/// The state of a frame at its submission.
 struct Submitted {
     time_s: f64,
     before: Option<Last>,
@@ -64,11 +64,11 @@ impl Submitted {
 }
 
 impl Pipeline {
-    /// Makes a pipeline for the frames of a camera.
+    /// Creates a pipeline for the frames of a camera.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter or camera that is out of range, [`Error::SizeMismatch`] for a mask of another
-    /// size than the camera's; and as [`Stream::new`].
+    /// [`Error::Parameter`] for a parameter or camera that is out of range, [`Error::SizeMismatch`] for a mask of
+    /// another size than the camera's; and as [`Stream::new`].
     pub fn new(backend: Backend, camera: &Camera, config: &PipelineConfig) -> Result<Self> {
         config.validate()?;
         camera.validate()?;
@@ -95,20 +95,22 @@ impl Pipeline {
         })
     }
 
-    /// Takes a sample of the gyro. Without [`PipelineConfig::gyro`] it is not looked at.
+    /// Takes a sample of the gyro. Without [`PipelineConfig::gyro`] it is ignored.
     pub fn push_gyro(&mut self, sample: GyroSample) {
         if let Some(gyro) = &mut self.gyro {
             gyro.push(sample);
         }
     }
 
-    /// Says which way the camera moves in its own frame at the frame that is submitted next, from a wind vane or from
-    /// satellites: better than what the flow alone tells. It holds until it is set again; none for the flow's own.
+    /// Sets the heading at the next submitted frame, in the camera's frame, as measured by a wind vane or by satellite
+    /// navigation: it is better than the flow's own estimate. It stays until it is set again; None returns to the
+    /// flow's estimate.
     pub fn set_heading(&mut self, heading: Option<Heading>) {
         self.given = heading;
     }
 
-    /// Takes a frame and the time of the middle of its exposure, in the camera's clock. See [`Stream::submit`].
+    /// Submits a frame with the time of the middle of its exposure, in seconds of the camera's clock. See
+    /// [`Stream::submit`].
     ///
     /// # Errors
     /// As [`Stream::submit`].
@@ -118,7 +120,7 @@ impl Pipeline {
         let frozen = before.filter(|before| before.digest == digest);
         let (turn, fault) = self.turn(before, time_s);
         let fault = match (frozen, fault) {
-            // Frames come as they should; only what they show is longer ago than a pair may be.
+            // The frames arrive in time; only the image that they repeat is too old for a pair.
             (Some(before), Some(Invalid::Interval { .. })) if self.is_pair(time_s - before.given_s) => {
                 Some(Invalid::Frozen)
             }
@@ -132,7 +134,7 @@ impl Pipeline {
         let motion = motion.values();
         let given = [("frame", Some(Value::Frame(frame))), ("motion", Some(Value::Raw(&motion)))];
         let ticket = self.stream.submit(&given, Submitted { time_s, before, turn, fault })?;
-        // What comes after is compared with when the picture was new.
+        // Later frames are compared with the time at which the image was new.
         let taken_s = frozen.map_or(time_s, |before| before.time_s);
         self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, given_s: time_s, digest });
         Ok(ticket)
@@ -146,8 +148,8 @@ impl Pipeline {
         self.stream.poll(ticket)
     }
 
-    /// Waits for a frame. Frames are to be waited for in the order in which they were submitted: what one tells of the
-    /// heading is used for the next.
+    /// Waits for a frame. Wait for frames in the order in which they were submitted: the heading found in one is used
+    /// for the next.
     ///
     /// # Errors
     /// As [`Stream::wait`].
@@ -215,7 +217,8 @@ impl Pipeline {
         self.wait(ticket)
     }
 
-    /// How the camera turned since the frame before, or why that is not known, or why the two make no pair.
+    /// The camera's rotation since the previous frame, or the reason why it is unknown or why the two frames are not
+    /// paired.
     fn turn(&self, before: Option<Last>, time_s: f64) -> (Option<DMat3>, Option<Invalid>) {
         let Some(before) = before else { return (None, Some(Invalid::First)) };
         let (interval_s, limit_s) = (time_s - before.time_s, self.config.max_interval_s);
@@ -229,12 +232,12 @@ impl Pipeline {
         }
     }
 
-    /// Whether frames so far apart make a pair.
+    /// Whether frames this far apart are paired.
     fn is_pair(&self, interval_s: f64) -> bool {
         interval_s > 0.0 && interval_s <= self.config.max_interval_s
     }
 
-    /// The heading as the camera sees it at a later time.
+    /// The heading in the camera's frame at a later time.
     fn turned_heading(&self, time_s: f64) -> Heading {
         let turn = self.gyro.as_ref().map(|gyro| gyro.prev_from_cur(self.heading_time_s, time_s));
         let Some(Ok(turn)) = turn else { return self.heading };
@@ -242,7 +245,7 @@ impl Pipeline {
         Heading { direction: cur_from_prev * self.heading.direction, ..self.heading }
     }
 
-    /// Begins anew: the next frame is a first frame, and nothing is known of the heading.
+    /// Restarts the stream: the next frame is a first frame, and the heading is unknown.
     pub fn reset(&mut self) {
         self.stream.reset();
         self.last = None;
@@ -251,37 +254,37 @@ impl Pipeline {
         self.alarms.reset();
     }
 
-    /// What was counted.
+    /// The stream's counts.
     pub fn stats(&self) -> Stats {
         self.stream.stats()
     }
 
-    /// What computes: the adapter's name, or the CPU and its threads.
+    /// The executor: the adapter's name, or the CPU and its number of threads.
     pub fn adapter(&self) -> String {
         self.stream.adapter()
     }
 
-    /// The device in use, if it is a GPU; after a loss it is another one than before.
+    /// The device in use, if it is a GPU. After a loss it is a new device.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.stream.gpu()
     }
 
-    /// The latencies of the last frames that gave a result.
+    /// The latencies of the last frames with a result.
     pub fn latency(&self) -> Latency {
         self.stream.latency()
     }
 
-    /// What is computed of a frame.
+    /// The computation of a frame.
     pub fn plan(&self) -> &Plan {
         self.stream.plan()
     }
 
-    /// The pinhole whose pictures the flow is computed of.
+    /// The ideal camera: the pinhole in whose image the flow is computed.
     pub fn ideal(&self) -> &Camera {
         &self.ideal
     }
 
-    /// The sectors of the view.
+    /// The grid of sectors over the view.
     pub fn grid(&self) -> &Grid {
         &self.sectors.grid
     }
@@ -292,7 +295,7 @@ impl Pipeline {
     }
 }
 
-/// A number by which two pictures that differ are told apart, but for one in 2⁶⁴.
+/// A hash of an image's pixels: two different images have the same one with a chance of 1 in 2⁶⁴.
 fn digest(frame: &Frame<'_>) -> u64 {
     // Fibonacci hashing, eight bytes at a time.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;

@@ -15,32 +15,33 @@ pub use step::Step;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 
-/// What happens when a frame arrives, for a stream of frames of one size.
+/// The computation of each frame of a stream: buffers, steps and ports, for frames of one size.
 ///
-/// Frames go alternately to parity 0 and 1, so that what was computed of the previous frame is still there.
+/// Frames go alternately to parity 0 and 1, so that the results of the previous frame are still there.
 #[derive(Clone)]
 pub struct Plan {
-    /// The size of the pictures, for messages.
+    /// The size of the frames, for messages.
     pub size: Size,
     /// The buffers.
     pub bufs: Vec<Buf>,
-    /// What is computed once, before the first frame.
+    /// The setup: steps that run once, before the first frame.
     pub setup: Vec<Step>,
-    /// What is computed of a frame alone, into the buffers of its parity.
+    /// The steps of a frame alone, into the buffers of its parity: index 0 for parity 0, index 1 for parity 1.
     pub ingest: [Vec<Step>; 2],
-    /// What is computed of a frame and the previous one, by the parity of the later one.
+    /// The steps of a frame and the previous one, by the parity of the later one.
     pub pair: [Vec<Step>; 2],
-    /// What the host may write before a run. Parities that share a buffer share its values.
+    /// The ports that the host may write before a run. Parities that share a buffer share its values.
     pub inputs: Vec<Port>,
-    /// What the host reads after a run of the pair, or of a plan without pairs.
+    /// The ports that the host reads after a run of the pair, or of a plan without pairs.
     pub outputs: Vec<Port>,
-    /// Buffers in which a pair finds what the previous pair has left for it, by the parity of the pair that finds it. They
-    /// are zero at the start of a stream, after a reset and after a loss. A pair must not write the one that it finds.
+    /// Buffers in which a pair finds the values that the previous pair has left for it, by the parity of the pair that
+    /// reads them. They are zero at the start of a stream, after a reset and after a loss. A pair must not write the
+    /// buffer that it reads.
     pub carried: Vec<[BufId; 2]>,
 }
 
 impl Plan {
-    /// A plan for single pictures: its steps are those of parity 0, and there are no pairs.
+    /// A plan for single images: its steps are those of parity 0, and there are no pairs.
     pub fn single(
         size: Size,
         bufs: Vec<Buf>,
@@ -52,35 +53,35 @@ impl Plan {
         Self { size, bufs, setup, ingest: [steps, Vec::new()], pair, inputs, outputs, carried }
     }
 
-    /// Bytes of all buffers.
+    /// Total size of all buffers in bytes.
     pub fn bytes(&self) -> u64 {
         self.bufs.iter().map(|buf| 4 * buf.len as u64).sum()
     }
 
-    /// A buffer.
+    /// The buffer with this number.
     pub fn buf(&self, id: BufId) -> &Buf {
         &self.bufs[id.0]
     }
 
-    /// The steps from the arrival of a frame of the given parity to its flow.
+    /// All steps for a frame of this parity: those of the frame alone, then those of the pair.
     pub fn steps(&self, parity: usize) -> impl Iterator<Item = &Step> {
         self.ingest[parity].iter().chain(&self.pair[parity])
     }
 
-    /// Where the input of this name stands in [`Plan::inputs`].
+    /// The index of the input of this name in [`Plan::inputs`].
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|port| port.name == name)
     }
 
-    /// The output of this name.
+    /// The output port of this name.
     pub fn output(&self, name: &str) -> Option<&Port> {
         self.outputs.iter().find(|port| port.name == name)
     }
 
-    /// Checks what the host gives against the inputs, and calls `f` with each input's index and the value for it.
+    /// Checks the host's values against the inputs, and calls `f` with each input's index and its value.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a value without an input of its name, and for an input that is required and not given; as
+    /// [`Error::Parameter`] for a value without an input of its name, and for a required input without a value; as
     /// [`Port::check`] for one that does not fit.
     pub fn check(&self, given: &[Given<'_>]) -> Result<()> {
         for (name, value) in given.iter().filter_map(|(name, value)| Some((*name, value.as_ref()?))) {
@@ -97,18 +98,18 @@ impl Plan {
         }
     }
 
-    /// Whether a step writes the buffer, so that what the host has written there does not stay.
+    /// Whether a step writes the buffer, so that the host's values do not stay.
     pub(crate) fn writes(&self, id: BufId) -> bool {
         let all = [&self.setup, &self.ingest[0], &self.ingest[1], &self.pair[0], &self.pair[1]];
         all.into_iter().flatten().any(|step| step.outputs.iter().any(|(output, _)| *output == id))
     }
 
-    /// Checks that the plan does not contradict itself.
+    /// Checks that the plan is consistent.
     ///
     /// # Errors
     /// [`Error::Kernel`] if a step has another number of buffers than its kernel, writes what it reads, writes an input
-    /// or a constant, reads what nothing has filled, or has results that do not fit their buffers; or if a port is larger
-    /// than its buffer, or has the name of another one.
+    /// or a constant, reads a buffer that nothing has filled, or has results that do not fit their buffers; or if a
+    /// port is larger than its buffer, or two ports have the same name.
     pub fn validate(&self) -> Result<()> {
         let mut filled: Vec<bool> = self.bufs.iter().map(|buf| buf.content != Content::Computed).collect();
         let by_host = self.inputs.iter().map(|port| port.bufs).chain(self.carried.iter().copied());

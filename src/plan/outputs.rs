@@ -1,10 +1,10 @@
-//! What is read of a plan, on the host.
+//! The outputs of a plan, on the host.
 
 use super::{PortKind, pack};
 use crate::frame::{FlowField, Plane};
 use crate::plan::Port;
 
-/// The values of a plan's outputs, in room that is made once.
+/// The values of a plan's outputs, in memory that is allocated once.
 #[derive(Clone, Debug)]
 pub struct Outputs(Vec<(&'static str, Output)>);
 
@@ -30,7 +30,7 @@ impl Outputs {
         Self(ports.iter().map(room).collect())
     }
 
-    /// Reads the output with this index from what its buffer holds, or more than that.
+    /// Reads the output with this index from the beginning of `values`, which are laid out as in its buffer.
     pub(crate) fn unpack(&mut self, index: usize, values: &[f32]) {
         match &mut self.0[index].1 {
             Output::Plane(plane) => pack::unpack_plane(values, plane.size, &mut plane.data),
@@ -42,7 +42,7 @@ impl Outputs {
         }
     }
 
-    /// An output of [`PortKind::Flow`]; none if there is none of this name.
+    /// The flow field of an output of [`PortKind::Flow`], displacements in pixels; None if there is no such output.
     pub fn flow(&self, name: &str) -> Option<&FlowField> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Flow(flow) if *known == name => Some(flow),
@@ -50,7 +50,7 @@ impl Outputs {
         })
     }
 
-    /// An output of [`PortKind::Plane`]; none if there is none of this name.
+    /// The plane of an output of [`PortKind::Plane`], one value per pixel; None if there is no such output.
     pub fn plane(&self, name: &str) -> Option<&Plane> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Plane(plane) if *known == name => Some(plane),
@@ -58,7 +58,8 @@ impl Outputs {
         })
     }
 
-    /// An output of [`PortKind::Raw`], or the bytes of a frame; none if there is none of this name.
+    /// The values of an output of [`PortKind::Raw`], or the words of a frame, laid out as in the buffer; None if there
+    /// is no such output.
     pub fn raw(&self, name: &str) -> Option<&[f32]> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Raw(raw) if *known == name => Some(raw.as_slice()),

@@ -1,6 +1,6 @@
-//! The one place where what the host holds is laid out as a plan's buffers hold it, and back.
+//! Packing and unpacking: conversion between the host's types and the layout of a plan's buffers.
 //!
-//! Rows of a buffer are padded to [`Size::stride`] values, and the surplus repeats the row's last pixel. A picture of
+//! Rows of a buffer are padded to [`Size::stride`] values, and the surplus repeats the row's last pixel. An image of
 //! several channels holds row 0 of each channel, then row 1 of each channel.
 
 use std::iter::repeat_n;
@@ -8,9 +8,9 @@ use std::iter::repeat_n;
 use super::{PortKind, Value};
 use crate::frame::{FlowField, Plane, Size};
 
-/// Where packed values go: main memory, or a mapped buffer of a GPU.
+/// The destination of packed values: main memory, or a mapped buffer of a GPU.
 pub(crate) trait Sink {
-    /// Writes bytes from this byte on.
+    /// Writes bytes from this offset on.
     fn bytes(&mut self, at: usize, bytes: &[u8]);
     /// Writes the values from the beginning.
     fn values(&mut self, values: impl Iterator<Item = f32>);
@@ -28,7 +28,7 @@ impl Sink for [f32] {
     }
 }
 
-/// Writes a value that [`Port::check`](super::Port::check) has found to fit. Returns how many `f32` were written.
+/// Writes a value that has passed [`Port::check`](super::Port::check). Returns the number of `f32` values written.
 pub(crate) fn pack<S: Sink + ?Sized>(kind: PortKind, value: &Value<'_>, sink: &mut S) -> usize {
     match (kind, value) {
         (PortKind::Frame { size, format }, Value::Frame(frame)) => {
@@ -38,7 +38,7 @@ pub(crate) fn pack<S: Sink + ?Sized>(kind: PortKind, value: &Value<'_>, sink: &m
             }
         }
         (PortKind::Plane { range, .. }, Value::Plane(plane)) => match range {
-            // Written so that NaN becomes the lower end.
+            // In this form NaN becomes the lower end.
             Some([low, high]) => {
                 sink.values(plane_values(plane, move |v| if v > low { v.min(high) } else { low }));
             }
@@ -54,7 +54,7 @@ pub(crate) fn pack<S: Sink + ?Sized>(kind: PortKind, value: &Value<'_>, sink: &m
     kind.len()
 }
 
-/// A plane of values from 0 to 1 as a constant of a plan; others are clamped, and NaN is 0.
+/// A plane of values from 0 to 1 as a constant of a plan. Other values are clamped, and NaN becomes 0.
 pub(crate) fn share(plane: &Plane) -> Vec<f32> {
     let kind = PortKind::Plane { size: plane.size, range: Some([0.0, 1.0]) };
     let mut values = vec![0.0; kind.len()];
@@ -62,7 +62,7 @@ pub(crate) fn share(plane: &Plane) -> Vec<f32> {
     values
 }
 
-/// Padded rows of `N` values side by side for each pixel, asked for in the order of memory.
+/// Padded rows of `N` values per pixel, side by side; `value` is called in the order of memory.
 pub(crate) fn padded_groups<const N: usize>(
     size: Size,
     mut value: impl FnMut(usize, usize) -> [f32; N],
@@ -79,7 +79,7 @@ pub(crate) fn padded_groups<const N: usize>(
     values
 }
 
-/// A plane's values as a buffer holds them.
+/// A plane's values in the layout of a buffer.
 fn plane_values(plane: &Plane, value: impl Fn(f32) -> f32 + Copy) -> impl Iterator<Item = f32> {
     let size = plane.size;
     plane.data.chunks_exact(size.width as usize).flat_map(move |row| {
@@ -88,7 +88,7 @@ fn plane_values(plane: &Plane, value: impl Fn(f32) -> f32 + Copy) -> impl Iterat
     })
 }
 
-/// A flow's values as a buffer holds them: row by row u and then v, unknown ones zero.
+/// A flow's values in the layout of a buffer: u and then v of each row; unknown displacements become zero.
 fn flow_values(field: &FlowField) -> impl Iterator<Item = f32> {
     let size = field.size;
     let known = |uv: [f32; 2], c: usize| if FlowField::is_known(uv) { uv[c] } else { 0.0 };
@@ -105,7 +105,7 @@ fn padded(size: Size, row: impl Iterator<Item = f32>, last: f32) -> impl Iterato
     row.chain(repeat_n(last, size.stride() - size.width as usize))
 }
 
-/// A buffer's flow as pairs, without the surplus.
+/// The flow in a buffer as pairs, without the surplus.
 pub(crate) fn unpack_flow(values: &[f32], size: Size, out: &mut [[f32; 2]]) {
     let (width, stride) = (size.width as usize, size.stride());
     for (rows, out) in values.chunks_exact(2 * stride).zip(out.chunks_exact_mut(width)) {
@@ -116,7 +116,7 @@ pub(crate) fn unpack_flow(values: &[f32], size: Size, out: &mut [[f32; 2]]) {
     }
 }
 
-/// A buffer's plane without the surplus.
+/// The plane in a buffer, without the surplus.
 pub(crate) fn unpack_plane(values: &[f32], size: Size, out: &mut [f32]) {
     let width = size.width as usize;
     for (row, out) in values.chunks_exact(size.stride()).zip(out.chunks_exact_mut(width)) {

@@ -1,26 +1,26 @@
-//! The ports of a plan: what the host writes before a run and reads after one.
+//! The ports of a plan: where the host writes before a run and reads after it.
 
 use super::BufId;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Frame, PixelFormat, Plane, Size};
 
-/// A place where the host writes into a plan or reads from it.
+/// A named place where the host writes into a plan or reads from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Port {
-    /// The name by which it is addressed, for example `frame`.
+    /// The name, for example `frame`.
     pub name: &'static str,
-    /// What its values are.
+    /// The kind of its values.
     pub kind: PortKind,
-    /// Its buffers, by the parity of the frame that is being computed.
+    /// Its buffers, by the parity of the frame that is computed.
     pub bufs: [BufId; 2],
-    /// What an input holds when the host gives nothing. Of an output it means nothing.
+    /// The values of an input for which the host gives none. Without meaning for an output.
     pub if_absent: Fill,
 }
 
-/// What the values of a port are, on the host and in the buffer.
+/// The kind of a port's values, on the host and in the buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PortKind {
-    /// The bytes of a frame. In the buffer every row begins at a whole word of four bytes.
+    /// The bytes of a frame. In the buffer every row begins at a multiple of four bytes.
     Frame {
         /// The frame's size.
         size: Size,
@@ -31,35 +31,36 @@ pub enum PortKind {
     Plane {
         /// The plane's size.
         size: Size,
-        /// The range that an input's values are clamped to; NaN becomes its lower end. None leaves them as they are.
+        /// The range to which an input's values are clamped; NaN becomes its lower end. None leaves the values
+        /// unchanged.
         range: Option<[f32; 2]>,
     },
-    /// A displacement per pixel, in pixels. An unknown one goes in as zero.
+    /// A displacement per pixel, in pixels. An unknown one becomes zero.
     Flow {
         /// The field's size.
         size: Size,
     },
-    /// Values as they lie in the buffer.
+    /// Values in the layout of the buffer.
     Raw {
-        /// How many. An input may be shorter: it then replaces the first values only.
+        /// The number of values. An input may be shorter: it then replaces the first values only.
         len: usize,
     },
 }
 
-/// What an input holds when the host gives nothing.
+/// The values of an input for which the host gives none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fill {
-    /// The host must give it every time.
+    /// None: the host must give values for every frame.
     Required,
-    /// One value everywhere.
+    /// The same value everywhere.
     Value(f32),
     /// These values, as many as the buffer holds.
     Values(Vec<f32>),
-    /// What stands in the buffer: what the previous run has left there.
+    /// The buffer's values, as the previous run has left them.
     Keep,
 }
 
-/// What the host writes to an input.
+/// A value that the host writes to an input.
 #[derive(Clone, Copy, Debug)]
 pub enum Value<'a> {
     /// For [`PortKind::Frame`].
@@ -72,7 +73,7 @@ pub enum Value<'a> {
     Raw(&'a [f32]),
 }
 
-/// What an input is called, and what is written to it; nothing leaves it to [`Port::if_absent`].
+/// The name of an input and its value; without a value [`Port::if_absent`] applies.
 pub type Given<'a> = (&'static str, Option<Value<'a>>);
 
 impl Port {
@@ -86,12 +87,12 @@ impl Port {
         Self::new(name, kind, buf, Fill::Keep)
     }
 
-    /// What is given for this port.
+    /// The value that is given for this port.
     pub(crate) fn among<'v>(&self, given: &[Given<'v>]) -> Option<Value<'v>> {
         given.iter().find(|(name, _)| *name == self.name).and_then(|(_, value)| *value)
     }
 
-    /// Checks that a value is of the port's kind and fits it.
+    /// Checks that a value has the port's kind and size.
     ///
     /// # Errors
     /// [`Error::PixelFormat`], [`Error::SizeMismatch`] or [`Error::Length`] for a value that does not fit,
@@ -127,7 +128,7 @@ impl Port {
 }
 
 impl PortKind {
-    /// Its length in the buffer, in `f32`.
+    /// The length in the buffer, in `f32` values.
     pub fn len(&self) -> usize {
         match *self {
             Self::Frame { size, format } => format.row_words(size.width) * size.height as usize,
@@ -137,7 +138,7 @@ impl PortKind {
         }
     }
 
-    /// Whether it holds nothing.
+    /// Whether the length is 0.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -10,20 +10,20 @@ use crate::kernel::Kernel;
 pub struct Step {
     /// The kernel.
     pub kernel: &'static Kernel,
-    /// What it is done for, for example `level 2, iteration 1`.
+    /// Its purpose, for example `level 2, iteration 1`.
     pub label: String,
-    /// Bytes of the uniform struct.
+    /// The bytes of the uniform struct.
     pub params: Vec<u8>,
-    /// Buffers read, in the kernel's order.
+    /// The input buffers, in the kernel's order.
     pub inputs: Vec<BufId>,
-    /// Buffers written, in the kernel's order, and how the result lies in them.
+    /// The output buffers, in the kernel's order, and the layout of the result in each.
     pub outputs: Vec<(BufId, Shape)>,
-    /// Width and height of what is computed.
+    /// Width and height of the computed image.
     pub extent: Size,
 }
 
 impl Step {
-    /// A step. What is computed is as large as the first output.
+    /// Creates a step. The computed image has the size of the first output.
     pub fn new<P: bytemuck::Pod>(
         kernel: &'static Kernel,
         label: impl Into<String>,
@@ -61,10 +61,10 @@ impl Step {
         for (i, &(output, shape)) in self.outputs.iter().enumerate() {
             let buf = &bufs[output.0];
             if self.inputs.contains(&output) || self.outputs[..i].iter().any(|other| other.0 == output) {
-                return wrong(format!("{} is an output and something else at once", buf.name));
+                return wrong(format!("{} is an output and also another buffer of the step", buf.name));
             }
             if buf.content != Content::Computed {
-                return wrong(format!("writes {}, which is not for steps to write", buf.name));
+                return wrong(format!("writes {}, which is an input or a constant", buf.name));
             }
             if buf.len < shape.len() {
                 return wrong(format!(

@@ -1,4 +1,4 @@
-//! From the flow to the sectors of the view.
+//! The steps from the flow to the sectors of the view.
 
 use super::config::Sphere;
 use super::grid::{Cells, Grid};
@@ -9,7 +9,7 @@ use crate::frame::Size;
 use crate::kernels::{cell_confidence, cell_mean, cells, looming, sectors, spherical_flow};
 use crate::plan::{BufId, Bufs, Port, PortKind, Shape, Step};
 
-/// From the flow to the sectors.
+/// Builds the steps from the flow to the sectors.
 pub(super) struct Aggregation<'a> {
     ideal: &'a Camera,
     view: &'a Sphere,
@@ -57,7 +57,7 @@ impl<'a> Aggregation<'a> {
         }
     }
 
-    /// What is read of a pair, but for the flow.
+    /// The outputs of a pair, without the flow.
     pub(super) fn outputs(&self) -> Vec<Port> {
         let port = |name: &'static str, (buf, shape): (BufId, Shape)| {
             Port::output(name, PortKind::Raw { len: shape.len() }, buf)
@@ -69,7 +69,7 @@ impl<'a> Aggregation<'a> {
         outputs
     }
 
-    /// `turn` is what the flow still holds of the camera's turn, `motion` what is known of the heading.
+    /// `turn` is the rotation that the flow still contains, `motion` the buffer with the heading.
     pub(super) fn steps(
         &self,
         steps: &mut Vec<Step>,
@@ -132,7 +132,7 @@ impl<'a> Aggregation<'a> {
     }
 }
 
-/// How nearness rate and divergence come of the cells.
+/// The parameters of the kernel that computes nearness rate and divergence of the cells.
 pub(super) fn looming_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> looming::Params {
     let [origin, pitch] = cells.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
     looming::Params {
@@ -147,19 +147,19 @@ pub(super) fn looming_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> lo
     }
 }
 
-/// How the cells are summed up in sectors.
+/// The parameters of the kernel that summarizes cells in sectors.
 pub(super) fn sectors_params(view: &Sphere, cells: &Cells) -> sectors::Params {
     sectors::Params {
         columns: view.sectors[0],
         rows: view.sectors[1],
         cell_columns: cells.size.width,
-        // A window is whole where all its cells are trusted; at half of that it still counts.
+        // A window's confidence is relative to all its cells: with half of them trusted it still counts.
         least_confidence: 0.5 * view.least_confidence as f32,
         quantile: view.quantile as f32,
     }
 }
 
-/// An ideal camera as the kernels take it.
+/// An ideal camera as the kernels' parameters.
 pub(super) fn pinhole(camera: &Camera) -> spherical_flow::Params {
     spherical_flow::Params {
         width: camera.size.width,

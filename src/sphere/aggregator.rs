@@ -1,4 +1,4 @@
-//! Flow that is known by other means, summed up as a plan sums up its own.
+//! Sectors of flow from other sources, aggregated as a plan aggregates its own.
 
 use glam::{DMat3, DVec3};
 
@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::kernels::{looming, sectors};
 
-/// Sums up flow on the view sphere in sectors, on the CPU: true flow, or that of another estimator.
+/// Aggregates flow on the view sphere into sectors, on the CPU: true flow, or the flow of another estimator.
 ///
-/// It is the second half of a pipeline's plan, from the cells on, by the same kernels.
+/// It runs the second half of a pipeline's plan, from the cells on, with the same kernels.
 #[derive(Clone, Debug)]
 pub struct SectorAggregator {
     cells: Cells,
@@ -28,16 +28,16 @@ pub struct SectorAggregator {
 /// The flow of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellFlow {
-    /// Where it is, a unit vector in the camera's frame, half-way between the two frames.
+    /// Its bearing, a unit vector in the camera's frame, half-way between the two frames.
     pub bearing: DVec3,
-    /// How the bearing moved from the frame before to this one, in radians, the camera's turn taken out.
+    /// The derotated motion of the bearing from the previous frame to the current one, in radians.
     pub flow_rad: DVec3,
-    /// How far it is to be trusted, 0 to 1.
+    /// Its confidence, 0 to 1.
     pub confidence: f64,
 }
 
 impl SectorAggregator {
-    /// For the view of a camera without a lens.
+    /// Creates an aggregator for the view of a camera without a lens.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a parameter that is out of range, or a camera with a lens.
@@ -65,17 +65,18 @@ impl SectorAggregator {
         })
     }
 
-    /// The cells, in whose order their flow is given.
+    /// The cells. Their order is that of the flow given to [`SectorAggregator::of`].
     pub fn cells(&self) -> &Cells {
         &self.cells
     }
 
-    /// Where the sectors lie.
+    /// The grid of the sectors.
     pub fn grid(&self) -> Grid {
         self.sectors.grid
     }
 
-    /// What the sectors say of the cells' flow between two frames this long apart; none of a cell is unknown.
+    /// The sectors of the cells' flow between two frames `interval_s` apart. `flows` gives one value per cell, row by
+    /// row as [`Cells::rays`]; None is an unknown flow, and so are cells that it leaves out at the end.
     pub fn of(
         &mut self,
         flows: impl Iterator<Item = Option<CellFlow>>,

@@ -1,23 +1,23 @@
-//! Which sectors are on a collision course, and when that is to be believed.
+//! Threats and alarms: sectors on a collision course, confirmed over several sectors and frames.
 
 use super::grid::{Grid, angles_rad};
 use super::motion::Heading;
 use super::sectors::Sectors;
 use crate::error::{Error, Result};
 
-/// When an alarm is raised.
+/// The criteria of threats and alarms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Alarm {
-    /// What is met within this time is a threat, in seconds, above 0 and at most 60.
+    /// The longest time to contact of a threat, in seconds, above 0 and at most 60.
     pub within_s: f64,
-    /// What is passed at less than this much flying time aside is met, in seconds, 0 to 60.
+    /// The largest miss distance of a threat, in seconds of flight, 0 to 60: 0.4 s is 2 m at 5 m/s.
     pub aside_s: f64,
-    /// Connected sectors that a threat must fill, at least 1.
+    /// The least number of connected sectors in a threat, at least 1.
     pub least_sectors: usize,
-    /// Frames in a row in which it must be seen, at least 1.
+    /// Consecutive frames in which a threat must be seen to be an alarm, at least 1.
     pub frames: u32,
-    /// The share of a sector that must be known, 0 to 1.
+    /// The least coverage of a sector that counts, 0 to 1.
     pub least_coverage: f64,
 }
 
@@ -52,30 +52,30 @@ impl Alarm {
     }
 }
 
-/// Something that will be met soon.
+/// Connected sectors on a collision course: something that will be met soon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threat {
-    /// Azimuth of its middle in the camera's frame, positive to the right.
+    /// Azimuth of its centre in the camera's frame, positive to the right.
     pub azimuth_rad: f64,
-    /// Elevation of its middle, positive up.
+    /// Elevation of its centre, positive up.
     pub elevation_rad: f64,
-    /// Seconds from the later frame until its nearest part is met.
+    /// Time to contact with its nearest part, in seconds from the later frame.
     pub time_s: f64,
-    /// Sectors that it fills.
+    /// Number of its sectors.
     pub sectors: usize,
-    /// Whether it was there for as many frames in a row as an alarm needs.
+    /// Whether it was seen in as many consecutive frames as an alarm needs: [`Alarm::frames`].
     pub alarm: bool,
 }
 
 /// Finds threats: connected sectors on a collision course, frame by frame.
 ///
-/// With the nearness rate N at an angle θ from the heading, what is there will be passed in `cos θ / N` seconds, at
-/// `sin θ / N` seconds of flight aside. A single sector never is a threat where two are asked for: one wild value does
-/// not raise an alarm, and neither does one frame.
+/// With the nearness rate N at an angle θ from the heading, an object will be passed in `cos θ / N` seconds at a miss
+/// distance of `sin θ / N` seconds of flight. With the default criteria neither a single sector nor a single frame
+/// raises an alarm, so that an outlier does not.
 #[derive(Clone, Debug)]
 pub struct AlarmFilter {
     alarm: Alarm,
-    /// For how many frames each sector has been part of a threat.
+    /// For how many consecutive frames each sector has been part of a threat.
     ages: Vec<u32>,
 }
 
@@ -89,12 +89,13 @@ impl AlarmFilter {
         Ok(Self { alarm, ages: vec![0; grid.len()] })
     }
 
-    /// Forgets what was seen.
+    /// Forgets all previous frames.
     pub fn reset(&mut self) {
         self.ages.fill(0);
     }
 
-    /// The threat that is met first, alarms before others; none if nothing is met soon.
+    /// The threat that will be met first, alarms before others; None without a threat. `sectors` must have the filter's
+    /// grid.
     pub fn update(&mut self, sectors: &Sectors, heading: &Heading) -> Option<Threat> {
         let grid = sectors.grid;
         let times: Vec<Option<f64>> = (0..grid.len()).map(|i| self.time_s(sectors, heading, i)).collect();
@@ -117,7 +118,7 @@ impl AlarmFilter {
         threats.into_iter().min_by(|a, b| b.alarm.cmp(&a.alarm).then(a.time_s.total_cmp(&b.time_s)))
     }
 
-    /// When what a sector shows is met, if it is soon and near.
+    /// The time to contact of a sector, in seconds along the heading, if it meets the criteria.
     fn time_s(&self, sectors: &Sectors, heading: &Heading, at: usize) -> Option<f64> {
         let sector = &sectors.sectors[at];
         if !(sector.coverage >= self.alarm.least_coverage) {
@@ -125,7 +126,7 @@ impl AlarmFilter {
         }
         let contact_s = sectors.time_to_contact_s(sector)[1]?;
         let grid = &sectors.grid;
-        // Where the heading is not known anything may be straight ahead.
+        // With an unknown heading, any direction may be straight ahead.
         let cosine = match heading.is_known() {
             true => grid.bearing(at % grid.columns, at / grid.columns).dot(heading.direction),
             false => 1.0,
@@ -136,7 +137,7 @@ impl AlarmFilter {
             .then_some(time_s)
     }
 
-    /// The longest that this sector or one beside it was part of a threat until the frame before.
+    /// The largest age of this sector and its neighbours in the previous frame.
     fn age_around(&self, grid: &Grid, at: usize) -> u32 {
         let (column, row) = (at % grid.columns, at / grid.columns);
         let columns = column.saturating_sub(1)..(column + 2).min(grid.columns);
@@ -146,7 +147,7 @@ impl AlarmFilter {
     }
 }
 
-/// The sectors that hang together with this one by their sides.
+/// The sectors connected to this one by their sides.
 fn connected(grid: &Grid, first: usize, times: &[Option<f64>], seen: &mut [bool]) -> Vec<usize> {
     let mut blob = vec![first];
     seen[first] = true;
@@ -172,7 +173,7 @@ fn connected(grid: &Grid, first: usize, times: &[Option<f64>], seen: &mut [bool]
 fn threat(grid: &Grid, blob: &[usize], times: &[Option<f64>], alarm: bool) -> Threat {
     let mut soonest: Vec<(f64, usize)> = blob.iter().filter_map(|at| Some((times[*at]?, *at))).collect();
     soonest.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // The second soonest, where there is one: the soonest may be a wild one.
+    // The second soonest, where there is one: the soonest may be an outlier.
     let time_s = soonest[1.min(soonest.len() - 1)].0;
     let sum: glam::DVec3 = soonest
         .iter()
@@ -210,7 +211,7 @@ mod tests {
     fn an_alarm_needs_two_sectors_and_two_frames() {
         let mut filter = AlarmFilter::new(Alarm::default(), &quiet().grid).unwrap();
         assert_eq!(filter.update(&quiet(), &AHEAD), None);
-        // One wild sector, for as long as it likes.
+        // A single outlying sector, over any number of frames.
         for _ in 0..3 {
             assert_eq!(filter.update(&with(&[(5, 2)], 1.0), &AHEAD), None);
         }

@@ -1,47 +1,50 @@
-//! How the view sphere is looked at.
+//! The configuration of the view sphere.
 
 use super::HeadingModel;
 use crate::error::{Error, Result, in_ranges};
 
-/// Where the camera's turn is taken out of the flow.
+/// Where the flow is derotated, that is, where the flow of the camera's rotation is removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Derotation {
-    /// Before the flow: the frame before is resampled as the turned camera would have seen it, so that only what is
-    /// left has to be found. Most accurate in hard turns; the frame before is expanded once more for every pair.
+    /// Before the flow is estimated: the previous frame is resampled as the rotated camera would have seen it, so that
+    /// only the translational flow is left to find. Most accurate under fast rotation; the previous frame is expanded
+    /// once more for every pair.
     #[default]
     Before,
-    /// After the flow, on the sphere. Exact for the flow that was found, but a large turn is hard to find.
+    /// After the flow is estimated, on the sphere. Exact for the estimated flow, but the flow of a fast rotation is
+    /// hard to estimate.
     After,
-    /// After the flow, whose search begins with the turn.
+    /// After the flow is estimated, as [`Derotation::After`]; the search begins with the flow of the rotation.
     Primed,
 }
 
-/// How the flow on the view sphere is summed up.
+/// The configuration of the view sphere: how flow is derotated and aggregated.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sphere {
-    /// Where the camera's turn is taken out.
+    /// Where the flow is derotated.
     pub derotation: Derotation,
-    /// How the direction of motion is carried on from frame to frame.
+    /// How the heading is carried from frame to frame.
     pub heading: HeadingModel,
-    /// Pixels of the side of the cells that the flow is averaged over, 1 to 64. Farnebäck's errors are alike over about
-    /// 8 px, so that smaller cells show no more.
+    /// Side of the cells over which the flow is averaged, in pixels, 1 to 64. The errors of Farnebäck's flow are
+    /// correlated over about 8 px, so that smaller cells carry no more information.
     pub cell: u32,
-    /// Pixels from one sample of a cell to the next, 1 to the cell's side.
+    /// Distance of a cell's samples in pixels, 1 to the cell's side.
     pub step: u32,
-    /// How far the window of the divergence reaches around a cell, in cells, 1 to 16; that of the nearness rate reaches
-    /// half as far.
+    /// Radius of the divergence's window around a cell, in cells, 1 to 16. The window of the nearness rate has half
+    /// this radius.
     pub window: u32,
     /// Columns and rows of sectors over the field of view, each 1 to 256.
     pub sectors: [u32; 2],
-    /// The upper quantile that a sector gives of its nearness rates and divergences, 0.5 to 0.99.
+    /// The rank of a sector's upper quantile of nearness rates and divergences, 0.5 to 0.99. The lower quantile's rank
+    /// is 1 minus this.
     pub quantile: f64,
-    /// Cells that are trusted less are left out, 0.01 to 0.9.
+    /// The least confidence of a cell that counts, 0.01 to 0.9.
     pub least_confidence: f64,
-    /// Standard error of a fully trusted cell's flow, in pixels, above 0 and at most 10.
+    /// Standard error of the flow of a cell with confidence 1, in pixels, above 0 and at most 10.
     pub noise_px: f64,
-    /// Pixels within the frame's border over which a place becomes trusted, 0 to 1000.
+    /// Width of the strip along the frame's border over which the certainty rises from 0 to 1, in pixels, 0 to 1000.
     pub margin_px: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Axes of a symmetric matrix.
+//! Eigenvalues and eigenvectors of a symmetric matrix.
 
 use glam::{DMat3, DVec3};
 

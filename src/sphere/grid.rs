@@ -10,17 +10,17 @@ use crate::frame::Size;
 
 /// A grid of azimuths and elevations over a camera's field of view.
 ///
-/// Azimuth is `atan2(x, z)`, positive to the right; elevation is `atan2(−y, √(x² + z²))`, positive up, both in the camera's
-/// frame. Column 0 is the leftmost one, row 0 the highest.
+/// Azimuth is `atan2(x, z)`, positive to the right; elevation is `atan2(−y, √(x² + z²))`, positive up, both in the
+/// camera's frame. Column 0 is the leftmost one, row 0 the highest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// Sectors in a row.
+    /// Sectors per row.
     pub columns: usize,
     /// Rows of sectors.
     pub rows: usize,
-    /// Azimuths of the left and the right border.
+    /// Azimuths of the left and the right border, in radians.
     pub azimuth_rad: [f64; 2],
-    /// Elevations of the upper and the lower border.
+    /// Elevations of the upper and the lower border, in radians.
     pub elevation_rad: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ impl Grid {
     /// The largest number of columns and of rows.
     pub const MAX_SIDE: u32 = 256;
 
-    /// The grid over all that an ideal camera sees.
+    /// The grid over the whole view of an ideal camera.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a number of columns or rows outside 1 to 256.
@@ -73,7 +73,7 @@ impl Grid {
         ]
     }
 
-    /// Azimuth and elevation of a sector's middle.
+    /// Azimuth and elevation of a sector's centre, in radians.
     pub fn angles_rad(&self, column: usize, row: usize) -> [f64; 2] {
         let pitch = self.pitch_rad();
         [
@@ -82,12 +82,12 @@ impl Grid {
         ]
     }
 
-    /// The unit bearing of a sector's middle, in the camera's frame.
+    /// The unit bearing of a sector's centre, in the camera's frame.
     pub fn bearing(&self, column: usize, row: usize) -> DVec3 {
         bearing(self.angles_rad(column, row))
     }
 
-    /// Column and row of the sector that a bearing lies in.
+    /// Column and row of the sector that contains a bearing; None outside the grid.
     pub fn sector(&self, bearing: DVec3) -> Option<[usize; 2]> {
         let [azimuth, elevation] = angles_rad(bearing);
         let [across, up] = self.pitch_rad();
@@ -97,7 +97,7 @@ impl Grid {
         inside.then_some([column as usize, row as usize])
     }
 
-    /// The cells of each sector: first and number in the list of members, sector by sector, and that list.
+    /// The cells of each sector: for each sector the first index and the count in the list of members, then that list.
     pub(super) fn members(&self, cells: &Cells) -> [Vec<f32>; 2] {
         let mut lists = vec![Vec::new(); self.len()];
         for (number, ray) in cells.rays().enumerate() {
@@ -142,9 +142,9 @@ pub fn angles_rad(bearing: DVec3) -> [f64; 2] {
 /// The square cells over which the flow is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cells {
-    /// Columns and rows.
+    /// Columns and rows of cells.
     pub size: Size,
-    /// Pixels of a cell's side.
+    /// Side of a cell in pixels.
     pub side: u32,
     pub(super) camera: Camera,
 }
@@ -155,7 +155,7 @@ impl Cells {
         Self { size: Size::new(width.div_ceil(side), height.div_ceil(side)), side, camera: *camera }
     }
 
-    /// The first cell's centre in the plane at unit distance, and from one centre to the next.
+    /// The first cell's centre in the plane at unit distance, and the distance from one centre to the next.
     pub(super) fn origin_and_pitch(&self) -> [[f64; 2]; 2] {
         let Camera { f_u, f_v, u_0, v_0, .. } = self.camera;
         let side = f64::from(self.side);
@@ -163,7 +163,8 @@ impl Cells {
         [[(first - u_0) / f_u, (first - v_0) / f_v], [side / f_u, side / f_v]]
     }
 
-    /// The directions of the cells' centres in the camera's frame, row by row; not of unit length.
+    /// The directions of the cells' centres in the camera's frame, row by row from the upper left, with z = 1 (not unit
+    /// vectors).
     pub fn rays(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [origin, pitch] = self.origin_and_pitch();
         let Size { width, height } = self.size;

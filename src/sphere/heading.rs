@@ -1,4 +1,4 @@
-//! Which way the camera moves, from the flow itself.
+//! The camera's direction of motion, estimated from the flow.
 
 use glam::{DMat3, DVec3};
 
@@ -7,31 +7,31 @@ use super::motion::Heading;
 use super::sectors::Sectors;
 use crate::quantile::median;
 
-/// How much of what the frames before said is kept from frame to frame.
+/// The share of the previous frames' moment that is kept from frame to frame.
 const MEMORY: f64 = 0.8;
-/// Rounds of weighing the sectors by how well they fit.
+/// Iterations of reweighting the sectors by how well they fit.
 const ROUNDS: usize = 8;
-/// How far the middle one of the moment's axes must stand out of the noise.
+/// The least ratio of the moment's median eigenvalue to its smallest one, which is noise.
 const LEAST_CONTRAST: f64 = 3.0;
-/// Errors that all sectors have in common, in radians.
+/// The error that all sectors share, in radians.
 const FLOOR_RAD: f64 = 0.01;
-/// Sectors whose errors are alike count as one.
+/// The number of sectors whose errors are correlated: together they count as one.
 const ALIKE: f64 = 4.0;
 
-/// What stays as it is from frame to frame while the camera turns.
+/// The quantity that stays constant from frame to frame while the camera rotates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum HeadingModel {
-    /// The direction of motion in the world: the vehicle goes straight on, however the camera is turned or shaken.
+    /// The direction of motion in the world: the vehicle goes straight on, however the camera rotates or shakes.
     #[default]
     Straight,
-    /// The direction of motion in the camera's frame: the vehicle flies the way its nose points, as a fixed wing does in
-    /// its turns, and the camera is fixed to it.
+    /// The direction of motion in the camera's frame: the vehicle flies the way its nose points, as a fixed wing does
+    /// in its turns, and the camera is fixed to it.
     Turning,
 }
 
 impl HeadingModel {
-    /// How what was known in the camera's frame at the earlier exposure is turned into that at the later one.
+    /// The rotation that takes the heading in the camera's frame at the earlier exposure into that at the later one.
     pub(crate) fn cur_from_prev(self, prev_from_cur: &DMat3) -> DMat3 {
         match self {
             Self::Straight => prev_from_cur.transpose(),
@@ -42,33 +42,34 @@ impl HeadingModel {
 
 /// Estimates the direction of motion over the last frames.
 ///
-/// The flow F at a bearing p that comes of moving along v lies in the plane of p and v, so v is normal to every `p × F`:
-/// it is the axis in which `Σ w (p × F)(p × F)ᵀ` is smallest. Sectors that do not fit, where something else moves, lose
-/// weight. Of the two directions of the axis it is the one that the flow leads away from.
+/// Translation along v makes a flow F at a bearing p that lies in the plane of p and v. So v is perpendicular to every
+/// `p × F`: it is the eigenvector of `Σ w (p × F)(p × F)ᵀ` with the smallest eigenvalue. Sectors that do not fit, where
+/// something moves by itself, lose weight. Of the eigenvector's two signs the estimate takes the one that the flow
+/// leads away from.
 #[derive(Clone, Debug)]
 pub struct HeadingFilter {
     model: HeadingModel,
     moment: DMat3,
-    /// Sectors that it is made of.
+    /// The number of sectors in the moment, with the same memory.
     sectors: f64,
 }
 
 impl HeadingFilter {
-    /// A filter that knows nothing yet.
+    /// A filter without any frame so far.
     pub fn new(model: HeadingModel) -> Self {
         Self { model, moment: DMat3::ZERO, sectors: 0.0 }
     }
 
-    /// Forgets everything.
+    /// Forgets all previous frames.
     pub fn reset(&mut self) {
         *self = Self::new(self.model);
     }
 
-    /// The direction of motion in the camera's frame at the later exposure, from this pair and those before.
+    /// The direction of motion in the camera's frame at the later exposure, from this pair and the previous ones.
     pub fn update(&mut self, sectors: &Sectors, prev_from_cur: &DMat3) -> Heading {
         let cur_from_prev = self.model.cur_from_prev(prev_from_cur);
         let kept = MEMORY * (cur_from_prev * self.moment * cur_from_prev.transpose());
-        // A sector's say is bounded: however fast something moves by itself, it is one among many.
+        // A sector's weight is bounded: however fast something moves by itself, it is one sector among many.
         let traces = sectors.moments.iter().map(trace);
         let usual = median(traces.filter(|trace| *trace > 0.0)).unwrap_or(1.0);
         let moments: Vec<DMat3> = (sectors.moments.iter())
@@ -83,7 +84,7 @@ impl HeadingFilter {
             }
             let misfit = |moment: &DMat3| axes[0].dot(*moment * axes[0]) / trace(moment).max(1e-30);
             let typical = median(moments.iter().map(misfit)).map_or(1.0, |median| median.max(1e-6));
-            // Geman and McClure's weights: what fits far worse than most counts for nothing.
+            // Geman and McClure's weights: a sector that fits far worse than most counts for nothing.
             sum = moments.iter().fold(kept, |sum, moment| {
                 let excess = misfit(moment) / (4.0 * typical);
                 sum + *moment * (1.0 + excess * excess).recip()
@@ -105,7 +106,7 @@ fn trace(m: &DMat3) -> f64 {
     m.x_axis.x + m.y_axis.y + m.z_axis.z
 }
 
-/// The one of an axis's directions that the flow leads away from.
+/// The axis with the sign that the flow leads away from.
 fn leading(axis: DVec3, sectors: &Sectors) -> DVec3 {
     let grid = sectors.grid;
     let along: f64 = (sectors.sectors.iter().enumerate())

@@ -1,7 +1,6 @@
-//! From pixels to the view sphere: bearings, the flow on the unit sphere with the camera's turn taken out, how fast what
-//! is seen comes nearer, and sectors that sum it up.
-//!
-//! All is in the camera's frame at the later of two exposures: x to the right, y down, z forward.
+//! The view sphere: bearings, derotated flow on the unit sphere, nearness rate and divergence, and the sectors that
+//! summarize them. Everything is in the camera's frame at the later of the two exposures: x to the right, y down, z
+//! forward.
 
 mod aggregate;
 mod aggregator;

@@ -1,4 +1,4 @@
-//! The flow on the view sphere in `f64`: what a static world does to bearings while the camera moves.
+//! The model of flow on the view sphere in `f64`: the motion of bearings of a static world while the camera moves.
 
 use glam::DVec3;
 
@@ -17,11 +17,11 @@ pub fn divergence(p: DVec3, nearness_1_m: f64, gradient_1_m: DVec3, v_m_s: DVec3
     2.0 * nearness_1_m * v_m_s.dot(p) - v_m_s.dot(gradient_1_m)
 }
 
-/// The flow that took a unit bearing to another one: a unit midpoint m, and the tangent there that has the direction of
+/// The flow that takes one unit bearing to another: a unit midpoint m, and the tangent there that has the direction of
 /// their chord and the length of the arc between them, in radians.
 ///
-/// Divided by the time it took, it is the rate at mid-time to second order. For opposite bearings there is no midpoint,
-/// and it is not a number.
+/// Divided by the elapsed time, it is the rate at mid-time to second order. Opposite bearings have no midpoint: the
+/// result is NaN.
 pub fn midpoint_flow(earlier: DVec3, later: DVec3) -> (DVec3, DVec3) {
     let chord = later - earlier;
     let arc = earlier.cross(later).length().atan2(earlier.dot(later));
@@ -61,7 +61,7 @@ mod tests {
         })
     }
 
-    /// Where a point is seen after a time, the camera going straight and turning steadily.
+    /// The bearing of a point after a time, with constant velocity and angular rate of the camera.
     fn seen(point: DVec3, time_s: f64) -> DVec3 {
         let turn = DMat3::from_axis_angle(OMEGA.normalize(), OMEGA.length() * time_s);
         // V is the velocity in the frame at time 0; over so short a time it may as well stay there.

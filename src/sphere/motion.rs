@@ -1,44 +1,44 @@
-//! What is known of the camera's motion between two frames.
+//! The camera's motion between two frames.
 
 use glam::{DMat3, DVec3};
 
-/// Values of a plan's `motion` buffer.
+/// Number of values in a plan's `motion` buffer. See [`Motion::values`].
 pub const MOTION_LEN: usize = 16;
 
-/// What is known of the camera's motion from the frame before to this one.
+/// The camera's motion from the previous frame to the current one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Takes a bearing in the camera's frame at the later exposure into its frame at the earlier one.
     pub prev_from_cur: DMat3,
-    /// Which way the camera moves, in its frame at the later exposure.
+    /// The direction in which the camera moves, in its frame at the later exposure.
     pub heading: Heading,
 }
 
-/// Which way the camera moves.
+/// The direction in which the camera moves, with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heading {
     /// A unit vector in the camera's frame (x to the right, y down, z forward).
     pub direction: DVec3,
-    /// Standard error of the direction, in radians; anything over 1 is as good as unknown.
+    /// Standard error of the direction, in radians; above 1 the direction counts as unknown.
     pub error_rad: f64,
 }
 
 impl Heading {
-    /// Nothing is known: straight ahead, give or take anything.
+    /// An unknown heading: straight ahead, with unbounded error.
     pub const UNKNOWN: Self = Self { direction: DVec3::Z, error_rad: 10.0 };
 
-    /// Whether the direction is known at all.
+    /// Whether the direction is known: an error of at most 1 rad.
     pub fn is_known(&self) -> bool {
         self.error_rad <= 1.0
     }
 }
 
 impl Motion {
-    /// No turn, and no heading that is known.
+    /// No rotation, and an unknown heading.
     pub const UNKNOWN: Self = Self { prev_from_cur: DMat3::IDENTITY, heading: Heading::UNKNOWN };
 
-    /// The values of the `motion` buffer: the rows of `prev_from_cur − 1`, so that a small turn keeps all its digits, then
-    /// the heading and its error.
+    /// The values of the `motion` buffer: the three rows of `prev_from_cur − 1`, each padded with a zero, then the
+    /// heading and its error. Without the identity a small rotation keeps all its digits in `f32`.
     pub fn values(&self) -> [f32; MOTION_LEN] {
         let rows = (self.prev_from_cur - DMat3::IDENTITY).transpose();
         let mut values = [0.0; MOTION_LEN];

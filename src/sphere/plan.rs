@@ -18,31 +18,31 @@ use crate::sphere::Motion;
 pub(crate) struct Cameras<'a> {
     /// The camera that takes the frames.
     pub(crate) raw: &'a Camera,
-    /// The pinhole whose pictures the flow is computed of.
+    /// The ideal camera, in whose image the flow is computed.
     pub(crate) ideal: &'a Camera,
-    /// How far each of the frame's pixels is to be trusted.
+    /// The certainty of each pixel of the raw frame.
     pub(crate) mask: Option<&'a Plane>,
-    /// Whether the camera's turn is known.
+    /// Whether the camera's rotation is known.
     pub(crate) gyro: bool,
 }
 
-/// Fields that are read beside the sectors, in this order.
+/// Outputs that are read back beside the sectors, in this order. [`Cue`](crate::Cue) states their layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ExtraOutputs {
-    /// Nearness rate, divergence, error and confidence of each cell.
+    /// Nearness rate, divergence, standard error and confidence of each cell: [`Cue::looming`](crate::Cue::looming).
     pub looming: bool,
-    /// Confidence, place and rate of each cell.
+    /// Confidence, place and rate of each cell: [`Cue::cells`](crate::Cue::cells).
     pub cells: bool,
-    /// The flow on the view sphere of each pixel.
+    /// The flow on the view sphere at each pixel: [`Cue::spherical_flow`](crate::Cue::spherical_flow).
     pub spherical_flow: bool,
 }
 
-/// The plan for frames of this format, and the cells and sectors it sums the flow up in.
+/// The plan for frames of this format, and the cells and sectors over which it aggregates the flow.
 ///
-/// Its inputs are `frame` and `motion`; its outputs are `sectors`, `flow` (from the current frame back to the previous one)
-/// and the [`ExtraOutputs`] that are asked for. With `certainty`, what the frame does not show and what the mask hides is left
-/// out of the estimator's neighbourhoods.
+/// Its inputs are `frame` and `motion`; its outputs are `sectors`, `flow` (from the current frame back to the previous
+/// one) and the [`ExtraOutputs`] that are asked for. With `certainty`, pixels outside the frame and pixels that the
+/// mask hides are excluded from the estimator's neighbourhoods.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a parameter that is out of range, [`Error::SizeMismatch`] for a mask of another size.
@@ -94,7 +94,8 @@ pub(crate) fn plan(
         }
         steps
     });
-    // The flow leads from the current frame back to the one before, so that it is known at the current frame's pixels.
+    // The flow leads from the current frame back to the previous one, so that it is known at the current frame's
+    // pixels.
     let pair = [0, 1].map(|parity| {
         let mut steps = Vec::new();
         let slots = match rectify.turned {

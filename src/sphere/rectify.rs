@@ -1,4 +1,5 @@
-//! Where the pictures come from: brightness, the lens taken out, and the frame before as the turned camera would see it.
+//! The images that the flow is estimated on: brightness, undistorted, and the previous frame as the rotated camera
+//! would see it.
 
 use super::config::{Derotation, Sphere};
 use super::motion::MOTION_LEN;
@@ -9,27 +10,27 @@ use crate::frame::PixelFormat;
 use crate::kernels::{remap, undistort_map};
 use crate::plan::{BufId, Bufs, PortKind, Shape, Step, pack};
 
-/// Where the pictures come from, in the ideal camera's geometry.
+/// Builds the images in the ideal camera's geometry.
 pub(super) struct Rectification<'a> {
     cameras: Cameras<'a>,
     pub(super) frame: BufId,
-    /// The frames' brightness, by parity; one buffer where the frame before is not looked at again.
+    /// The frames' brightness, by parity; one buffer where the previous frame is not read again.
     raw: [BufId; 2],
-    /// The picture that is expanded.
+    /// The image that the estimator takes.
     gray: BufId,
-    /// How far the ideal camera's pixels can be trusted.
+    /// The certainty of the ideal camera's pixels.
     pub(super) certainty: BufId,
-    /// Where each pixel is read; none where the raw frame is the ideal picture.
+    /// The map from the ideal image to the raw frame; None where the raw frame is the ideal image.
     pub(super) map: Option<Map>,
-    /// The same for the frame before, as the turned camera would have seen it.
+    /// The same for the previous frame, as the rotated camera would have seen it.
     pub(super) turned: Option<Map>,
     mask: Option<BufId>,
-    /// No turn.
+    /// A constant: no rotation.
     pub(super) still: BufId,
     lens: undistort_map::Params,
 }
 
-/// A resampling.
+/// A map of places in the raw frame, and the certainty there.
 #[derive(Clone, Copy)]
 pub(super) struct Map {
     places: BufId,
@@ -74,7 +75,7 @@ impl<'a> Rectification<'a> {
         }
     }
 
-    /// What is computed once.
+    /// The setup steps.
     pub(super) fn setup(&self) -> Vec<Step> {
         self.map.iter().flat_map(|map| self.make(*map, self.still, "undistortion")).collect()
     }
@@ -94,7 +95,7 @@ impl<'a> Rectification<'a> {
         gray_step(self.cameras.raw.size, format, self.frame, self.raw[parity])
     }
 
-    /// The picture of a frame through a map; the frame itself where there is none.
+    /// The image of a frame through a map; the frame itself without a map.
     pub(super) fn picture(
         &self,
         steps: &mut Vec<Step>,

@@ -1,4 +1,4 @@
-//! What of the camera's turn is left in the flow after the gyro's has been taken out.
+//! The residual rotation: the camera's rotation that is left in the flow after derotation.
 
 use glam::{DMat3, DVec3};
 
@@ -6,30 +6,31 @@ use super::eigen::symmetric_eigen;
 use super::sectors::Sectors;
 use crate::quantile::median;
 
-/// Rounds of Gauss and Newton's method.
+/// Iterations of the Gauss–Newton method.
 const ROUNDS: usize = 15;
-/// Sectors that are needed at least.
+/// The least number of sectors.
 const LEAST_SECTORS: usize = 12;
-/// Levenberg and Marquardt's damping, as a share of the diagonal.
+/// Levenberg–Marquardt damping, as a share of the diagonal.
 const DAMPING: f64 = 1e-3;
-/// Sectors nearer to the direction of motion than this, in radians, say nothing of what is across it.
+/// Sectors nearer to the direction of motion than this, in radians, do not determine the flow across it.
 const NEAR_RAD: f64 = 0.05;
-/// Unknowns: the turn, and the direction of motion along two axes.
+/// Unknowns: the rotation, and the direction of motion along two axes.
 const UNKNOWNS: usize = 5;
 
-/// What a sector shows.
+/// A sector's observation.
 struct SectorFlow {
     bearing: DVec3,
     flow: DVec3,
     weight: f64,
 }
 
-/// The camera's angular rate that the sectors' flow still shows, rad/s in the camera's frame; none where they do not tell.
+/// The camera's angular rate that the sectors' flow still shows, rad/s in the camera's frame; None where they do not
+/// determine it.
 ///
-/// Moving along v, a static point at a bearing p is seen to move within the plane of p and v. What moves across that plane,
-/// along n = p × v / |p × v|, is a turn: (F − p × ω)·n = 0, the epipolar constraint for small motions (A. Bruss and B. Horn,
-/// Passive navigation, CVGIP 21, 1983). ω and v are found together by least squares; sectors that fit badly lose weight
-/// (S. Geman and D. McClure, 1987).
+/// While the camera moves along v, the bearing p of a static point moves within the plane of p and v. Flow across that
+/// plane, along n = p × v / |p × v|, is rotation: (F − p × ω)·n = 0, the epipolar constraint for small motions (A.
+/// Bruss and B. Horn, Passive navigation, CVGIP 21, 1983). ω and v are found together by least squares; sectors that
+/// fit badly lose weight (S. Geman and D. McClure, 1987).
 pub fn residual_rotation_rad_s(sectors: &Sectors) -> Option<DVec3> {
     let seen = seen(sectors);
     if seen.len() < LEAST_SECTORS {
@@ -47,7 +48,7 @@ pub fn residual_rotation_rad_s(sectors: &Sectors) -> Option<DVec3> {
         let typical = (2.0 * median(rows.iter().map(|(_, misfit, _)| misfit.abs()))?).max(1e-4);
         let (mut matrix, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
         for (slopes, misfit, weight) in &rows {
-            // The first round takes everything as it is.
+            // The first iteration weights all sectors alike.
             let excess = if round > 0 { misfit / typical } else { 0.0 };
             let weight = weight / (1.0 + excess * excess).powi(2);
             for i in 0..UNKNOWNS {
@@ -76,14 +77,14 @@ fn seen(sectors: &Sectors) -> Vec<SectorFlow> {
             weight: sector.coverage * sector.confidence,
         })
         .collect();
-    // Something fast that moves by itself must not lead the first round astray.
+    // Something fast that moves by itself must not mislead the first iteration.
     let speed = median(seen.iter().map(|sector| sector.flow.length()));
     let usual = speed.map_or(1.0, |speed| speed.max(1e-4));
     seen.iter_mut().for_each(|sector| sector.weight /= 1.0 + (sector.flow.length() / usual).powi(2));
     seen
 }
 
-/// What a sector says: the slopes of its misfit against the unknowns, the misfit, the weight.
+/// A sector's row of the equations: the derivatives of its misfit with respect to the unknowns, the misfit, the weight.
 fn row(
     sector: &SectorFlow,
     turn: DVec3,
@@ -98,7 +99,7 @@ fn row(
     }
     let normal = across / length;
     let left = sector.flow - p.cross(turn);
-    // The normal turns with the direction, but stays a unit vector.
+    // The normal rotates with the direction, but stays a unit vector.
     let [along_a, along_b] = axes.map(|axis| {
         let change = p.cross(axis) / length;
         left.dot(change - normal * normal.dot(change))
@@ -107,7 +108,7 @@ fn row(
     Some(([slope.x, slope.y, slope.z, along_a, along_b], left.dot(normal), sector.weight))
 }
 
-/// Solves linear equations with a positive definite matrix by elimination; none where it is not.
+/// Solves linear equations with a positive definite matrix by elimination; None where it is not positive definite.
 fn solve(mut matrix: [[f64; UNKNOWNS]; UNKNOWNS], mut right: [f64; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
     let largest = (0..UNKNOWNS).map(|i| matrix[i][i]).fold(0.0, f64::max);
     for i in 0..UNKNOWNS {
@@ -136,7 +137,7 @@ mod tests {
     use super::*;
     use crate::sphere::{Grid, model};
 
-    /// A flight over a ground with things on it, and a turn that is left in the flow.
+    /// A flight over ground with objects on it, and a rotation that is left in the flow.
     fn sectors(v: DVec3, turn: DVec3, noise: f64, wrong: bool) -> Sectors {
         let grid = Grid { columns: 24, rows: 18, azimuth_rad: [-0.7, 0.7], elevation_rad: [0.55, -0.55] };
         let mut sectors = Sectors::unknown(grid);

@@ -1,4 +1,4 @@
-//! What each sector of the view says, in seconds and radians.
+//! Sectors of the view: the flow of their cells, summarized in seconds and radians.
 
 use glam::{DMat3, DVec3};
 
@@ -6,47 +6,48 @@ use super::grid::Grid;
 use crate::frame::Size;
 use crate::kernels::sectors::CHANNELS;
 
-/// What the flow in one sector of the view says.
+/// The summary of the flow in one sector of the view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sector {
-    /// The share of the sector whose flow is trusted, 0 to 1. With 0 nothing else is known.
+    /// The share of the sector's cells whose flow is trusted, 0 to 1. At 0 the other fields are unknown.
     pub coverage: f64,
-    /// The mean confidence in that share, 0 to 1.
+    /// The mean confidence of those cells, 0 to 1.
     pub confidence: f64,
-    /// Nearness rate ρ‖v‖ in 1/s, the inverse of the time to contact along the bearing: lower quantile, median and upper
-    /// quantile over the sector's cells. Negative where things recede.
+    /// Nearness rate ρ‖v‖ in 1/s, the inverse of the time to contact along the bearing: lower quantile, median and
+    /// upper quantile over the sector's cells. Negative where things recede.
     pub nearness_rate_hz: [f64; 3],
     /// Standard error of a single cell's nearness rate, 1/s.
     pub nearness_error_hz: f64,
     /// Upper quantile of the positive part of the divergence of the flow on the sphere, 1/s.
     pub divergence_hz: f64,
-    /// Mean flow on the unit sphere in the camera's frame, rad/s, the camera's turn taken out.
+    /// Mean derotated flow on the unit sphere in the camera's frame, rad/s.
     pub flow_rad_s: DVec3,
 }
 
 impl Sector {
-    /// Whether anything is known of it.
+    /// Whether any cell of it is trusted.
     pub fn is_known(&self) -> bool {
         self.coverage > 0.0
     }
 }
 
-/// What all sectors say of a pair of frames.
+/// The sectors of a pair of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sectors {
-    /// Where the sectors lie.
+    /// The grid of the sectors.
     pub grid: Grid,
     /// Seconds between the two frames.
     pub interval_s: f64,
-    /// The sectors, row by row.
+    /// The sectors, row by row from the upper left: `grid.len()` of them.
     pub sectors: Vec<Sector>,
-    /// `Σ w n nᵀ` of each sector's normals n = p × F (F in radians a frame, w the confidence): the direction of motion is
-    /// normal to all of them.
+    /// The moment `Σ w n nᵀ` of each sector, as many as [`Sectors::sectors`] and in their order. n = p × F is the
+    /// normal of a cell's bearing p and its flow F in radians per frame, w its confidence; the direction of motion is
+    /// perpendicular to every n.
     pub moments: Vec<DMat3>,
 }
 
 impl Sectors {
-    /// Sectors of which nothing is known.
+    /// Sectors without a trusted cell.
     pub fn unknown(grid: Grid) -> Self {
         let count = grid.len();
         Self {
@@ -57,7 +58,7 @@ impl Sectors {
         }
     }
 
-    /// Reads what the kernel `sectors` left of frames this long apart.
+    /// Reads the output of the kernel `sectors` for frames this many seconds apart.
     pub(crate) fn read(&mut self, values: &[f32], interval_s: f64) {
         self.interval_s = interval_s;
         let (columns, rate) = (self.grid.columns, 1.0 / interval_s);
@@ -78,17 +79,17 @@ impl Sectors {
         }
     }
 
-    /// A sector.
+    /// The sector in a column and row.
     pub fn get(&self, column: usize, row: usize) -> &Sector {
         &self.sectors[row * self.grid.columns + column]
     }
 
-    /// Seconds from the later frame until contact along a sector's bearing: by the upper quantile of its nearness rates,
-    /// their median and their lower quantile, so from the earliest to the latest. `None` where it recedes or nothing is
-    /// known.
+    /// Time to contact along a sector's bearing, in seconds from the later frame, from the earliest to the latest: by
+    /// the upper quantile of its nearness rates, by their median, by their lower quantile. `None` where the sector
+    /// recedes or is unknown.
     pub fn time_to_contact_s(&self, sector: &Sector) -> [Option<f64>; 3] {
         let [low, median, high] = sector.nearness_rate_hz;
-        // The rates are those half-way between the two frames.
+        // The rates are those at the middle of the interval.
         let at_the_later =
             |rate_hz: f64| (rate_hz > 0.0).then(|| (1.0 / rate_hz - 0.5 * self.interval_s).max(0.0));
         [high, median, low].map(|rate_hz| at_the_later(rate_hz).filter(|_| sector.is_known()))

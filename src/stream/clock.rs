@@ -9,20 +9,20 @@ use super::stats::Stages;
 use crate::gpu::Gpu;
 use crate::plan::Plan;
 
-/// What a device must have to tell the time inside a pass.
+/// The device features for timestamps inside a pass.
 const NEEDED: Features = Features::TIMESTAMP_QUERY.union(Features::TIMESTAMP_QUERY_INSIDE_PASSES);
 
 /// Queries of the device's clock: one before the first step, one after each.
 pub(super) struct Clock {
     pub(super) queries: QuerySet,
     ticks: Buffer,
-    /// Nanoseconds of a tick.
+    /// Nanoseconds per tick.
     period: f64,
     pub(super) stages: Stages,
 }
 
 impl Clock {
-    /// None if the device cannot tell the time of every step.
+    /// None if the device cannot measure the time of every step.
     pub(super) fn new(gpu: &Gpu, plan: &Plan) -> Option<Self> {
         let steps = plan.steps(0).count().max(plan.steps(1).count());
         let count = u32::try_from(steps + 1).ok().filter(|count| *count <= wgpu::QUERY_SET_MAX_QUERIES)?;
@@ -51,13 +51,13 @@ impl Clock {
         self.ticks.size()
     }
 
-    /// Records the copy of a frame's ticks to behind its results.
+    /// Records the copy of a frame's ticks to the readback buffer, after its results.
     pub(super) fn copy(&self, encoder: &mut CommandEncoder, steps: usize, to: &Buffer, layout: &Layout) {
         encoder.resolve_query_set(&self.queries, 0..steps as u32 + 1, &self.ticks, 0);
         encoder.copy_buffer_to_buffer(&self.ticks, 0, to, place(layout) as u64, 8 * (steps as u64 + 1));
     }
 
-    /// Reads a frame's ticks. If they make no sense, nothing is shown of the whole frame.
+    /// Reads a frame's ticks. If they are inconsistent, the whole frame has no times.
     pub(super) fn read(&mut self, view: &[u8], parity: usize, steps: usize, layout: &Layout) {
         let ticks: &[u64] = bytemuck::cast_slice(&view[place(layout)..][..8 * (steps + 1)]);
         let sane = plausible(ticks);
@@ -69,12 +69,12 @@ impl Clock {
     }
 }
 
-/// Some drivers leave ticks out, or give them in the wrong order.
+/// Some drivers omit ticks or return them in the wrong order.
 fn plausible(ticks: &[u64]) -> bool {
     ticks.iter().all(|&tick| tick > 0) && ticks.is_sorted()
 }
 
-/// Where the ticks lie in a readback buffer, in bytes.
+/// The offset of the ticks in a readback buffer, in bytes.
 fn place(layout: &Layout) -> usize {
     (4 * layout.readback()).next_multiple_of(8)
 }

@@ -1,34 +1,34 @@
-//! How a stream of frames is run.
+//! The configuration of a stream of frames.
 
 use std::time::Duration;
 
 use crate::error::{Error, Result};
 
-/// What a stream does when the GPU is lost and cannot be reopened.
+/// The behaviour of a stream when the GPU is lost and cannot be reopened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum OnLoss {
     /// Every further call is [`Error::DeviceLost`].
     #[default]
     Fail,
-    /// The stream goes on, on the CPU, and [`Stats::on_cpu`](super::Stats::on_cpu) says so.
+    /// The stream continues on the CPU, as [`Stats::on_cpu`](super::Stats::on_cpu) tells.
     Cpu,
 }
 
-/// How a stream of frames is run, whatever is computed of them.
+/// The configuration of a stream of frames, for any plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StreamConfig {
-    /// Frames that may be submitted and not yet taken, 1 to 8.
+    /// The number of frames that may be in flight (submitted and not yet taken), 1 to 8.
     pub in_flight: usize,
-    /// How long a frame may take from submit on. None: as long as it takes.
+    /// The time that a frame may take from its submission on. None for no limit.
     pub deadline: Option<Duration>,
-    /// What happens when the GPU is lost a second time.
+    /// The behaviour when the GPU is lost a second time.
     pub on_loss: OnLoss,
-    /// Whether the time of every step is taken.
+    /// Whether the time of every step is measured.
     pub timestamps: bool,
-    /// What a submit to a full stream does: if false it is [`Error::Busy`]; if true the oldest waiting frame is dropped
-    /// and counted. Needs `in_flight` of at least 2: one frame is computed while another one waits.
+    /// Whether a submit to a full stream drops the oldest waiting frame and counts it, in place of failing with
+    /// [`Error::Busy`]. Needs `in_flight` of at least 2: one frame is computed while another one waits.
     pub drop_oldest: bool,
 }
 

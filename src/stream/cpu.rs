@@ -1,4 +1,4 @@
-//! The stream on the CPU: frames are copied when submitted and computed when waited for.
+//! The stream on the CPU: frames are copied at the submit and computed during the wait.
 
 use std::time::Instant;
 
@@ -21,10 +21,10 @@ pub(super) struct CpuWorker {
     timed: bool,
 }
 
-/// Room for a frame in flight.
+/// The memory of a frame in flight.
 struct Slot {
     inputs: Vec<Vec<f32>>,
-    /// Of each input, how many values were given for the frame.
+    /// For each input, the number of values that were given for the frame.
     given: Vec<Option<usize>>,
     /// Steps done.
     progress: usize,
@@ -50,7 +50,7 @@ impl CpuWorker {
         }
     }
 
-    /// Bytes beside the plan's.
+    /// Size of the slots in bytes, without the plan's buffers.
     pub(super) fn bytes(&self) -> u64 {
         4 * (self.slots.len() * (self.layout.upload() + self.layout.readback())) as u64
     }
@@ -86,10 +86,11 @@ impl CpuWorker {
         }
     }
 
-    /// Computes a started frame, until it is done or the time has come; at least one step. True if it is done.
+    /// Computes a started frame until it is done or the deadline has passed; at least one step. Returns true if it is
+    /// done.
     pub(super) fn work(&mut self, plan: &Plan, slot: usize, job: Job, until: Option<Instant>) -> bool {
-        // One call into the pool for all steps: each of them would wake its threads anew. Frames too small to be shared
-        // out stay on this thread.
+        // One call into the pool for all steps: one call per step would wake its threads each time. Frames too small to
+        // be divided stay on this thread.
         let done = match plan.size.pixels() >= SMALLEST_SHARE {
             true => rayon::join(|| self.steps(plan, slot, job, until), || ()).0,
             false => self.steps(plan, slot, job, until),
@@ -117,7 +118,7 @@ impl CpuWorker {
         true
     }
 
-    /// Copies what was computed into the slot, before the next frame overwrites it.
+    /// Copies the results into the slot, before the next frame overwrites them.
     fn keep(&mut self, plan: &Plan, slot: usize, job: Job) {
         if self.timed {
             self.stages.show(job.parity, job.steps(plan));
@@ -131,7 +132,7 @@ impl CpuWorker {
         &self.slots[slot].outputs
     }
 
-    /// What stands in place of an adapter's name.
+    /// The name in place of an adapter's.
     pub(super) fn threads() -> String {
         let threads = rayon::current_num_threads();
         format!("CPU, {threads} thread{}", if threads == 1 { "" } else { "s" })

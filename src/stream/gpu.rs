@@ -1,4 +1,4 @@
-//! The stream on the GPU: rings of mapped buffers, one submission per frame.
+//! The stream on the GPU: rings of mapped buffers and one submission per frame.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -39,7 +39,7 @@ impl GpuWorker {
         })
     }
 
-    /// Bytes beside the plan's.
+    /// Size of the rings in bytes, without the plan's buffers.
     pub(super) fn bytes(&self) -> u64 {
         self.slots.iter().map(Slot::bytes).sum::<u64>() + self.clock.as_ref().map_or(0, Clock::bytes)
     }
@@ -48,7 +48,7 @@ impl GpuWorker {
         &self.layout
     }
 
-    /// Copies what comes with a frame into its slot.
+    /// Copies a frame's inputs into its slot.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
@@ -56,12 +56,12 @@ impl GpuWorker {
         self.slots[slot].fill(&self.gpu, plan, &self.layout, given)
     }
 
-    /// Submits a frame that was copied.
+    /// Submits a copied frame.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
     pub(super) fn start(&mut self, plan: &Plan, slot: usize, job: Job) -> Result<()> {
-        // wgpu panics where it is out of memory and nobody handles its errors.
+        // wgpu panics if it is out of memory and no error handler is installed.
         let started = catch_unwind(AssertUnwindSafe(|| self.submit(plan, slot, job)));
         started.map_err(|_| self.gpu.lost_error("the driver failed while a frame was submitted"))
     }
@@ -93,7 +93,7 @@ impl GpuWorker {
             let queries = clock.as_ref().map(|clock| &clock.queries);
             exec.record_frame(&mut pass, job.parity, job.pair, queries);
         }
-        // Of a first frame only the clock is read.
+        // A first frame has no outputs: only the clock is read.
         *mapped = clock.is_some() || (job.pair && layout.readback() > 0);
         if let Some(readback) = readback.as_ref().filter(|_| *mapped) {
             for (port, place) in plan.outputs.iter().zip(&layout.outputs).filter(|_| job.pair) {
@@ -105,14 +105,14 @@ impl GpuWorker {
             }
         }
         *submission = Some(gpu.submit(encoder));
-        // That mapping worked shows when the range is asked for. Closures that hold nothing are not allocated.
+        // Whether the mapping succeeded shows when the range is requested. Closures without captures are not allocated.
         upload.map_async(MapMode::Write, .., |_| {});
         if let Some(readback) = readback.as_ref().filter(|_| *mapped) {
             readback.map_async(MapMode::Read, .., |_| {});
         }
     }
 
-    /// Waits for a submitted frame at most this long. True if it is done.
+    /// Waits for a submitted frame, at most this long. Returns true if it is done.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
@@ -121,7 +121,7 @@ impl GpuWorker {
         self.gpu.poll(PollType::Wait { submission_index, timeout: Some(timeout) })
     }
 
-    /// Brings what was read of a frame that is done to the host.
+    /// Reads the outputs of a finished frame.
     ///
     /// # Errors
     /// [`Error::DeviceLost`](crate::Error::DeviceLost).
@@ -144,7 +144,7 @@ impl GpuWorker {
         Ok(())
     }
 
-    /// Frees the slot of a frame that is done, without reading it.
+    /// Frees the slot of a finished frame without reading it.
     pub(super) fn release(&mut self, slot: usize) {
         self.slots[slot].release();
     }
@@ -154,7 +154,7 @@ impl GpuWorker {
     }
 }
 
-/// What an upload slot is for.
+/// The usage of an upload buffer.
 pub(super) const UPLOAD: BufferUsages = BufferUsages::MAP_WRITE.union(BufferUsages::COPY_SRC);
-/// What a readback slot is for.
+/// The usage of a readback buffer.
 pub(super) const READBACK: BufferUsages = BufferUsages::MAP_READ.union(BufferUsages::COPY_DST);

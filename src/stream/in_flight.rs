@@ -1,4 +1,4 @@
-//! The frames in flight: which waits, which is being computed, which is done.
+//! The frames in flight: waiting, being computed, or done.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -14,20 +14,20 @@ pub(super) struct InFlight<P> {
     pub(super) submitted: Instant,
     /// When [`Error::Timeout`](crate::Error::Timeout) is due.
     pub(super) due: Option<Instant>,
-    /// Whether what came with it replaces what the previous frame has left.
+    /// Whether its inputs replace the values that the previous frame has left.
     pub(super) replaces: bool,
-    /// What the caller keeps with it.
+    /// The caller's payload.
     pub(super) payload: P,
     pub(super) state: State,
-    /// The first frame of the pair; of a frame that still waits, this one.
+    /// The first frame of the pair; for a frame that still waits, this frame.
     pub(super) previous: u64,
-    /// What was the last frame started before this one.
+    /// The last frame that was started before this one.
     pub(super) before: Option<Last>,
-    /// Nobody will ask for it.
+    /// It was given up: no one will wait for it.
     pub(super) given_up: bool,
 }
 
-/// How far a frame is.
+/// The state of a frame.
 #[derive(Clone, Copy)]
 pub(super) enum State {
     Waiting,
@@ -35,13 +35,13 @@ pub(super) enum State {
     Done(Job),
 }
 
-/// The last frame whose computing began.
+/// The last frame whose computation was started.
 #[derive(Clone, Copy)]
 pub(super) struct Last {
     pub(super) frame: u64,
     pub(super) epoch: u64,
     pub(super) parity: usize,
-    /// Whether what it leaves for the next frame stands in the buffers.
+    /// Whether the values that it leaves for the next frame are in the buffers.
     pub(super) carried: bool,
 }
 
@@ -67,7 +67,7 @@ impl<P> InFlightList<P> {
         self.free.pop()
     }
 
-    /// Frees a slot that no frame has come to.
+    /// Frees a slot that no frame uses.
     pub(super) fn put_back(&mut self, slot: usize) {
         self.free.push(slot);
     }
@@ -76,7 +76,7 @@ impl<P> InFlightList<P> {
         self.list.iter().position(|entry| entry.frame == frame && !entry.given_up)
     }
 
-    /// Takes a frame out and frees its slot.
+    /// Removes a frame and frees its slot.
     pub(super) fn remove(&mut self, place: usize) -> Option<InFlight<P>> {
         let entry = self.list.remove(place)?;
         self.free.push(entry.slot);
@@ -100,7 +100,8 @@ impl<P> InFlightList<P> {
         self.list.iter_mut().find(|entry| matches!(entry.state, State::Waiting))
     }
 
-    /// The frame that is dropped for a newer one: the oldest that waits to be fetched, or else to be computed.
+    /// The frame that is dropped for a newer one: the oldest that is done and not taken, or else the oldest that waits
+    /// to be computed.
     pub(super) fn oldest_waiting(&self) -> Option<usize> {
         let done = self.list.iter().position(|entry| matches!(entry.state, State::Done(_)));
         done.or_else(|| self.list.iter().position(|entry| matches!(entry.state, State::Waiting)))
@@ -108,7 +109,7 @@ impl<P> InFlightList<P> {
 }
 
 impl<P> InFlight<P> {
-    /// What is to be computed of it after this frame.
+    /// The computation of it after this frame.
     pub(super) fn job(&self, last: Option<Last>) -> Job {
         let previous = last.filter(|last| last.epoch == self.epoch);
         Job {
@@ -120,7 +121,7 @@ impl<P> InFlight<P> {
     }
 }
 
-/// When a frame is due; never, if that is beyond what the clock can tell.
+/// A frame's deadline; None if it is beyond the clock's range.
 pub(super) fn due(from: Instant, deadline: Option<Duration>) -> Option<Instant> {
     from.checked_add(deadline?)
 }

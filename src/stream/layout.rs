@@ -1,10 +1,10 @@
-//! Where the values of a plan's ports lie in the memory of a frame in flight.
+//! The layout of a plan's ports in the memory of a frame in flight.
 
 use std::ops::Range;
 
 use crate::plan::{Fill, Given, Plan, Port};
 
-/// The places of all inputs and outputs, each one after the other, in `f32`.
+/// The offsets of all inputs and outputs, one after the other, in `f32`.
 pub(super) struct Layout {
     pub(super) inputs: Vec<Input>,
     pub(super) outputs: Vec<Range<usize>>,
@@ -13,9 +13,9 @@ pub(super) struct Layout {
 /// An input of the plan.
 pub(super) struct Input {
     pub(super) place: Range<usize>,
-    /// Whether a run leaves other values in its buffer than the host has written.
+    /// Whether a run overwrites the values that the host has written to its buffer.
     pub(super) overwritten: bool,
-    /// Whether its buffers are also carried from frame to frame.
+    /// Whether its buffers are carried from frame to frame.
     pub(super) carried: bool,
 }
 
@@ -29,17 +29,17 @@ impl Layout {
         Self { inputs: inputs.collect(), outputs: places(&plan.outputs).collect() }
     }
 
-    /// Values that are written for a frame.
+    /// Number of values written per frame.
     pub(super) fn upload(&self) -> usize {
         self.inputs.last().map_or(0, |input| input.place.end)
     }
 
-    /// Values that are read of a pair.
+    /// Number of values read per pair.
     pub(super) fn readback(&self) -> usize {
         self.outputs.last().map_or(0, |place| place.end)
     }
 
-    /// Whether the host replaces what the previous frame has left.
+    /// Whether the host replaces the values that the previous frame has left.
     pub(super) fn replaces_carried(&self, plan: &Plan, given: &[Given<'_>]) -> bool {
         plan.inputs.iter().zip(&self.inputs).any(|(port, input)| input.carried && port.among(given).is_some())
     }
@@ -53,17 +53,17 @@ fn places(ports: &[Port]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// What an input's buffers hold, by parity.
+/// The contents of an input's buffers, by parity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Held {
-    /// Anything.
+    /// Unknown.
     #[default]
     Other,
-    /// What [`Port::if_absent`] says.
+    /// The values of [`Port::if_absent`].
     Fill,
 }
 
-/// What every input's buffers hold, so that what is there already is not written again.
+/// The contents of every input's buffers, so that values that are there already are not written again.
 pub(super) struct Holdings(Vec<[Held; 2]>);
 
 impl Holdings {
@@ -71,7 +71,7 @@ impl Holdings {
         Self(vec![[Held::Other; 2]; plan.inputs.len()])
     }
 
-    /// What has to be written to an input for a frame; from then on it counts as written.
+    /// The values to write to an input for a frame; from then on they count as written.
     pub(super) fn write(
         &mut self,
         index: usize,
@@ -94,7 +94,7 @@ impl Holdings {
     }
 }
 
-/// What has to be written to an input's buffer.
+/// The values to write to an input's buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Write {
     Nothing,

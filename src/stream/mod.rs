@@ -1,10 +1,10 @@
-//! The real-time face of any plan: frames go in, its outputs come out, and nothing waits for ever or grows without bound.
+//! Runs any plan on a stream of frames in real time, with bounded waiting and bounded memory.
 //!
-//! A stream of frames is computed pair by pair, each frame with the previous one. What was computed of a frame alone is
-//! kept for the next pair, and the result is the same, bit for bit, as that of a stream that was given only the two.
+//! A stream of frames is computed pair by pair, each frame with the previous one. The results of a frame alone are kept
+//! for the next pair. The result of a pair equals, bit for bit, that of a stream of these two frames only.
 //!
-//! On the GPU a frame begins to be computed when it is submitted, while the host goes on. On the CPU `submit` copies the
-//! frame, and it is computed in [`Stream::poll`] and [`Stream::wait`], on the threads of rayon's pool.
+//! On the GPU the computation of a frame starts at its submission, while the host goes on. On the CPU `submit` copies
+//! the frame, and [`Stream::poll`] and [`Stream::wait`] compute it on the threads of rayon's pool.
 
 mod clock;
 mod config;
@@ -36,8 +36,8 @@ use worker::Worker;
 
 /// Runs a plan on a stream of frames.
 ///
-/// All memory is taken when it is made; a frame takes none, apart from what wgpu and rayon take by themselves. With every
-/// frame the caller hands over a payload of type `P`, which comes back with the frame's outputs.
+/// [`Stream::new`] allocates all memory; a frame allocates none, apart from wgpu's and rayon's own allocations. The
+/// caller hands over a payload of type `P` with every frame, and gets it back with the frame's outputs.
 pub struct Stream<P = ()> {
     id: u64,
     plan: Plan,
@@ -45,10 +45,10 @@ pub struct Stream<P = ()> {
     worker: Worker,
     flights: InFlightList<P>,
     next: u64,
-    /// Counts the beginnings of the stream.
+    /// The number of restarts of the stream.
     epoch: u64,
     last: Option<Last>,
-    /// Frames whose results went with a device.
+    /// Frames whose results were lost with a device.
     lost: VecDeque<u64>,
     where_lost: String,
     why: String,
@@ -56,7 +56,7 @@ pub struct Stream<P = ()> {
     window: Window,
 }
 
-/// A frame that was submitted. Copies of it stand for the same frame.
+/// A handle of a submitted frame. Copies refer to the same frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Ticket {
     stream: u64,
@@ -70,29 +70,29 @@ impl Ticket {
     }
 }
 
-/// A frame that is done.
+/// The result of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Done<'a, P> {
     /// The frame's number.
     pub frame: u64,
-    /// What came with it.
+    /// The payload that was submitted with it.
     pub payload: P,
-    /// The number of the frame that it was paired with: the previous one, unless that one was dropped. None for a first
+    /// The number of the frame that it is paired with: the previous one, unless that one was dropped. None for a first
     /// frame.
     pub previous: Option<u64>,
-    /// What was computed of the pair. None for a first frame.
+    /// The outputs of the pair. None for a first frame.
     pub outputs: Option<&'a Outputs>,
-    /// Time from submit until now.
+    /// Time from the submit to the return of the wait.
     pub latency: Duration,
 }
 
 impl<P> Stream<P> {
-    /// Makes a stream of frames for a plan.
+    /// Creates a stream that runs a plan.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a configuration that is out of range, [`Error::Kernel`] for a plan that contradicts
-    /// itself; [`Error::TooLarge`] and [`Error::OutOfMemory`] if the adapter has no room for it; [`Error::DeviceLost`] if
-    /// the adapter is gone.
+    /// itself; [`Error::TooLarge`] and [`Error::OutOfMemory`] if the adapter has no room for it; [`Error::DeviceLost`]
+    /// if the adapter's device is lost.
     pub fn new(backend: &Backend, plan: Plan, config: &StreamConfig) -> Result<Self> {
         static STREAMS: AtomicU64 = AtomicU64::new(0);
         config.validate()?;
@@ -115,21 +115,20 @@ impl<P> Stream<P> {
         })
     }
 
-    /// Takes what comes with a frame, by the names of the plan's inputs. It is copied, and the call does not wait for
-    /// anything.
+    /// Submits a frame's inputs, by the names of the plan's input ports. They are copied; the call does not wait.
     ///
     /// # Errors
-    /// As [`Plan::check`]; [`Error::Busy`] if as many frames as [`StreamConfig::in_flight`] are submitted and not taken,
-    /// unless [`StreamConfig::drop_oldest`] makes room; [`Error::DeviceLost`], see [`Stream::wait`]. The stream goes on
-    /// after all of them as if the frame had not been there.
+    /// As [`Plan::check`]; [`Error::Busy`] if [`StreamConfig::in_flight`] frames are submitted and not taken, unless
+    /// [`StreamConfig::drop_oldest`] makes room; [`Error::DeviceLost`], see [`Stream::wait`]. After any of them the
+    /// stream goes on as if the frame had not been submitted.
     pub fn submit(&mut self, given: &[Given<'_>], payload: P) -> Result<Ticket> {
         self.plan.check(given)?;
         let ticket = self.enqueue(given, payload);
         self.recovered(ticket)
     }
 
-    /// Whether a frame is done, so that [`Stream::wait`] would not wait. On the CPU it computes the frame, and those
-    /// before it; on the GPU it waits for nothing.
+    /// Whether a frame is done, so that [`Stream::wait`] would return at once. On the CPU this call computes the frame
+    /// and those before it; on the GPU it does not wait.
     ///
     /// # Errors
     /// [`Error::Ticket`] if the frame was taken already, dropped, or is another stream's; [`Error::DeviceLost`], see
@@ -143,10 +142,11 @@ impl<P> Stream<P> {
     /// Waits for a frame.
     ///
     /// # Errors
-    /// [`Error::Timeout`] if [`StreamConfig::deadline`] has passed since submit and the frame is not done; it may be asked
-    /// for again, and then has the same time again from that call on. [`Error::Ticket`] if the frame was taken already,
-    /// dropped, or is another stream's. [`Error::DeviceLost`] for every frame that is not done when the GPU is lost; the
-    /// next frame is a first frame on the device, which is reopened once, or on the CPU, as [`StreamConfig::on_loss`] says.
+    /// [`Error::Timeout`] if [`StreamConfig::deadline`] has passed since submit and the frame is not done; it can be
+    /// waited for again, with a new deadline from that call on. [`Error::Ticket`] if the frame was taken already,
+    /// dropped, or belongs to another stream. [`Error::DeviceLost`] for every frame that is not done when the GPU is
+    /// lost; the next frame is a first frame on the device, which is reopened once, or on the CPU, as
+    /// [`StreamConfig::on_loss`] says.
     pub fn wait(&mut self, ticket: Ticket) -> Result<Done<'_, P>> {
         let taken = self.take(ticket)?;
         Ok(self.handed(taken))
@@ -155,7 +155,7 @@ impl<P> Stream<P> {
     /// Submits a frame and waits for it.
     ///
     /// # Errors
-    /// As [`Stream::submit`] and [`Stream::wait`]. A frame that is late is given up and counted as dropped.
+    /// As [`Stream::submit`] and [`Stream::wait`]. A frame that misses its deadline is given up and counted as dropped.
     pub fn process(&mut self, given: &[Given<'_>], payload: P) -> Result<Done<'_, P>> {
         let ticket = self.submit(given, payload)?;
         let taken = self.take(ticket);
@@ -166,18 +166,18 @@ impl<P> Stream<P> {
         Ok(self.handed(taken))
     }
 
-    /// Begins the stream anew: the next frame is a first frame, and nothing is carried over to it. Frames in flight stay
+    /// Restarts the stream: the next frame is a first frame, and nothing is carried over to it. Frames in flight stay
     /// valid.
     pub fn reset(&mut self) {
         self.epoch += 1;
     }
 
-    /// What computes: the adapter's name, or the CPU and its threads.
+    /// The executor: the adapter's name, or the CPU and its number of threads.
     pub fn adapter(&self) -> String {
         self.worker.adapter()
     }
 
-    /// The device in use, if it is a GPU; after a loss it is another one than before.
+    /// The device in use, if it is a GPU. After a loss it is a new device.
     pub fn gpu(&self) -> Option<&Gpu> {
         match &self.worker {
             Worker::Gpu(gpu) => Some(&gpu.gpu),
@@ -185,34 +185,34 @@ impl<P> Stream<P> {
         }
     }
 
-    /// The latencies of the last frames that gave a result.
+    /// The latencies of the last frames with a result.
     pub fn latency(&self) -> Latency {
         self.window.latency()
     }
 
-    /// What was counted.
+    /// The stream's counts.
     pub fn stats(&self) -> Stats {
         self.stats
     }
 
     /// The time of each step of the last frame: on the GPU of the last one taken, on the CPU of the last one computed.
-    /// Empty without [`StreamConfig::timestamps`], if the device cannot tell, or if what it told of that frame made no
-    /// sense.
+    /// One entry per step, in the order of the plan. Empty without [`StreamConfig::timestamps`], if the device has no
+    /// such clock, or if its times of that frame were inconsistent.
     pub fn stage_times(&self) -> &[StageTime] {
         self.worker.stage_times()
     }
 
-    /// Where [`Stream::stage_times`] come from.
+    /// The clock of [`Stream::stage_times`].
     pub fn time_source(&self) -> TimeSource {
         self.worker.time_source(self.config.timestamps)
     }
 
-    /// Bytes of the plan's buffers and of those for the frames in flight.
+    /// Total size of the plan's buffers and of the buffers for frames in flight, in bytes.
     pub fn buffer_bytes(&self) -> u64 {
         self.plan.bytes() + self.worker.bytes()
     }
 
-    /// What is computed of a frame.
+    /// The computation of a frame.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

@@ -1,4 +1,4 @@
-//! What happens when the GPU is lost: the stream begins anew on a new device, once, and then on the CPU or not at all.
+//! Recovery from the loss of a GPU: the stream restarts on a new device, once; after that on the CPU or not at all.
 
 use super::gpu::GpuWorker;
 use super::worker::Worker;
@@ -7,7 +7,7 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 
 impl<P> Stream<P> {
-    /// Passes a result on. If it tells of a loss, the stream is brought back first.
+    /// Passes a result on. If it is a loss, the stream is recovered first.
     pub(super) fn recovered<T>(&mut self, result: Result<T>) -> Result<T> {
         if let (Err(Error::DeviceLost { adapter, reason }), true) = (&result, self.worker.is_gpu()) {
             self.recover(adapter.clone(), reason.clone());
@@ -18,7 +18,7 @@ impl<P> Stream<P> {
     fn recover(&mut self, adapter: String, reason: String) {
         self.stats.losses += 1;
         for entry in self.flights.list.iter().filter(|entry| !entry.given_up) {
-            // Only the newest are remembered: the list must not grow.
+            // Only the newest frames are remembered: the list must not grow.
             if self.lost.len() == StreamConfig::MAX_IN_FLIGHT {
                 self.lost.pop_front();
             }

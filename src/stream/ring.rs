@@ -1,4 +1,4 @@
-//! A frame's buffers between host and GPU, mapped and mapped again, never made anew.
+//! A frame's buffers between host and GPU: allocated once and mapped again for each frame.
 
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, BufferViewMut, SubmissionIndex};
 
@@ -12,15 +12,15 @@ use crate::plan::{Fill, Given, Plan};
 pub(super) struct Slot {
     /// The inputs, one after the other. Mapped whenever no submission holds it.
     pub(super) upload: Buffer,
-    /// The outputs, then the clock's ticks; none if nothing of it is read.
+    /// The outputs, then the clock's ticks; None if nothing is read.
     pub(super) readback: Option<Buffer>,
     /// The submission that holds the buffers.
     pub(super) submission: Option<SubmissionIndex>,
-    /// Of each input, how many values were given for the frame.
+    /// For each input, the number of values that were given for the frame.
     pub(super) given: Vec<Option<usize>>,
     /// Whether the readback buffer is mapped, or will be.
     pub(super) mapped: bool,
-    /// Of each input, whether its place in the upload buffer holds what stands in for a value that is not given.
+    /// For each input, whether its place in the upload buffer holds the default for an absent value.
     filled: Vec<bool>,
 }
 
@@ -41,7 +41,7 @@ impl Slot {
         self.upload.size() + self.readback.as_ref().map_or(0, Buffer::size)
     }
 
-    /// Copies what comes with a frame into the upload buffer.
+    /// Copies a frame's inputs into the upload buffer.
     pub(super) fn fill(
         &mut self,
         gpu: &Gpu,
@@ -73,7 +73,7 @@ impl Slot {
         Ok(())
     }
 
-    /// Lets the next frame in.
+    /// Makes the slot ready for the next frame.
     pub(super) fn release(&mut self) {
         self.submission = None;
         if let Some(readback) = self.readback.as_ref().filter(|_| self.mapped) {
@@ -102,7 +102,7 @@ impl Sink for Region<'_> {
     }
 }
 
-/// A buffer for a frame, mapped from the beginning if the host writes it.
+/// A buffer for a frame, created mapped if the host writes it.
 fn buffer(gpu: &Gpu, plan: &Plan, name: &str, size: u64, usage: BufferUsages) -> Result<Buffer> {
     let limit = gpu.limits().max_buffer_size;
     if size > limit {

@@ -1,4 +1,4 @@
-//! Which frame is computed, waited for, dropped or handed over, and when.
+//! The schedule: which frame is computed, waited for, dropped or handed over, and when.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use super::{Done, Stream, Ticket};
 use crate::error::{Error, Result};
 use crate::plan::Given;
 
-/// A frame that is done, its outputs still in its slot.
+/// A finished frame whose outputs are still in its slot.
 pub(super) struct Taken<P> {
     frame: u64,
     payload: P,
@@ -18,7 +18,8 @@ pub(super) struct Taken<P> {
 }
 
 impl<P> Stream<P> {
-    /// Frames that may be computed at once. Where the oldest may be dropped, one is kept back to be dropped.
+    /// The number of frames that may be computed concurrently. If the oldest may be dropped, one is held back to be
+    /// dropped.
     fn room(&self) -> usize {
         match self.worker.is_gpu() {
             true => self.config.in_flight - usize::from(self.config.drop_oldest),
@@ -80,7 +81,7 @@ impl<P> Stream<P> {
         Ok(())
     }
 
-    /// On the GPU, sees what is done and starts what waits. On the CPU both is for those who wait.
+    /// On the GPU, marks finished frames as done and starts waiting ones. On the CPU the waiting calls do both.
     fn refresh(&mut self) -> Result<()> {
         if !self.worker.is_gpu() {
             return Ok(());
@@ -119,7 +120,7 @@ impl<P> Stream<P> {
         Ok(())
     }
 
-    /// Checks that a ticket is of a frame in flight.
+    /// Checks that a ticket belongs to a frame in flight.
     pub(super) fn find(&self, ticket: Ticket) -> Result<()> {
         if ticket.stream == self.id && self.flights.place(ticket.frame).is_some() {
             return Ok(());
@@ -129,10 +130,10 @@ impl<P> Stream<P> {
         Err(lost.unwrap_or(Error::Ticket { ticket: ticket.frame }))
     }
 
-    /// Computes or waits until a frame is done, or the time has come. True if it is done.
+    /// Computes or waits until a frame is done or the deadline has passed. Returns true if it is done.
     pub(super) fn bring(&mut self, frame: u64, wait: bool, until: Option<Instant>) -> Result<bool> {
         loop {
-            // Who waits sees what is done by waiting.
+            // The wait itself finds what is done.
             if !wait {
                 self.refresh()?;
             }
@@ -167,7 +168,7 @@ impl<P> Stream<P> {
         let done = self.bring(ticket.frame, true, due);
         let taken = done.and_then(|_| self.hand_over(ticket));
         let taken = self.recovered(taken);
-        // The frame in hand tells of the loss at once.
+        // The frame in hand reports the loss at once.
         self.lost.retain(|frame| *frame != ticket.frame);
         taken
     }
@@ -192,7 +193,7 @@ impl<P> Stream<P> {
         Ok(Taken { frame: ticket.frame, payload, previous, slot, pair: job.pair, latency })
     }
 
-    /// Waits for a frame without taking it. One that is late is given up and counted as dropped.
+    /// Waits for a frame without taking it. A frame that misses its deadline is given up and counted as dropped.
     ///
     /// # Errors
     /// As [`Stream::wait`].
@@ -215,18 +216,20 @@ impl<P> Stream<P> {
         Error::Timeout { frame, waited_ms: ms(waited), deadline_ms }
     }
 
-    /// Gives up a frame that is late.
+    /// Gives up a frame that has missed its deadline.
     pub(super) fn give_up(&mut self, frame: u64) {
         let Some(place) = self.flights.place(frame) else { return };
         self.stats.dropped += 1;
         let entry = &mut self.flights.list[place];
         if let State::Started(job) = entry.state {
             if self.worker.is_gpu() {
-                // It cannot be called back. It stays a part of the stream, and its slot is free when it is done.
+                // A submission cannot be cancelled. The frame stays a part of the stream, and its slot is freed when it
+                // is done.
                 entry.given_up = true;
                 return;
             }
-            // The next frame takes the same parity. What the host has given may have replaced what it would find there.
+            // The next frame takes the same parity. The host's inputs may have replaced the values that it would find
+            // there.
             self.last = entry.before.map(|last| Last { carried: last.carried && !job.replaced, ..last });
         }
         self.flights.remove(place);

@@ -1,50 +1,50 @@
-//! What a stream tells of itself: counts, latencies and the time of each step.
+//! Statistics of a stream: counts, latencies and the time of each step.
 
 use std::time::Duration;
 
 use crate::plan::Plan;
 
-/// Latencies that the percentiles are taken from.
+/// Number of latencies over which percentiles are computed.
 const WINDOW: usize = 1024;
 
-/// Time from submit to wait's return, over the last 1024 frames that gave a result.
+/// Percentiles of the time from a frame's submit to the return of its wait, over the last 1024 frames with a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Latency {
-    /// Frames in the window; at 0 the rest is zero.
+    /// Number of frames; at 0 the other fields are zero.
     pub count: usize,
-    /// Half of the frames took at most this long.
+    /// The median.
     pub p50: Duration,
-    /// Nine in ten took at most this long.
+    /// The 90th percentile.
     pub p90: Duration,
-    /// 99 in a hundred took at most this long.
+    /// The 99th percentile.
     pub p99: Duration,
     /// The longest.
     pub max: Duration,
 }
 
-/// What a stream has counted since it was made.
+/// Counts of a stream since its creation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Frames accepted.
     pub submitted: u64,
-    /// Frames handed over, first frames included.
+    /// Frames whose results were taken, first frames included.
     pub done: u64,
-    /// Frames given up: replaced by a newer one, or late in [`process`](super::Stream::process).
+    /// Frames given up: dropped for a newer one, or past the deadline in [`process`](super::Stream::process).
     pub dropped: u64,
-    /// Times that a deadline passed.
+    /// Number of missed deadlines.
     pub timeouts: u64,
-    /// Times that the GPU was lost.
+    /// Number of losses of the GPU.
     pub losses: u64,
-    /// Times that it was brought back.
+    /// Number of times that it was reopened.
     pub rebuilt: u64,
     /// Whether the stream computes on the CPU, from the beginning or since a loss.
     pub on_cpu: bool,
 }
 
-/// Where the times of the steps come from.
+/// The clock that measures the times of the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeSource {
-    /// Nowhere: not asked for, or the device cannot tell.
+    /// None: times are not asked for, or the device has no such clock.
     None,
     /// The GPU's own clock.
     Gpu,
@@ -52,18 +52,18 @@ pub enum TimeSource {
     Host,
 }
 
-/// How long a step took.
+/// The time of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StageTime {
     /// The kernel's name.
     pub kernel: &'static str,
-    /// What it was done for, for example `level 2, iteration 1`.
+    /// The step's purpose, for example `level 2, iteration 1`.
     pub label: String,
-    /// How long it took.
+    /// The time that it took.
     pub time: Duration,
 }
 
-/// The last latencies, in a ring that never grows.
+/// The last latencies, in a ring of fixed size.
 pub(super) struct Window {
     nanos: Box<[u64]>,
     seen: usize,
@@ -85,7 +85,7 @@ impl Window {
         let sorted = &mut sorted[..count];
         sorted.copy_from_slice(&self.nanos[..count]);
         sorted.sort_unstable();
-        // The nearest rank: the smallest latency that so many of a hundred do not exceed.
+        // The nearest rank: the smallest latency that this percentage of frames does not exceed.
         let rank = |percent: usize| {
             let at = (count * percent).div_ceil(100).max(1) - 1;
             Duration::from_nanos(sorted.get(at).copied().unwrap_or(0))
@@ -94,7 +94,7 @@ impl Window {
     }
 }
 
-/// Room for the time of every step, by parity, made once.
+/// Memory for the time of every step, by parity, allocated once.
 pub(super) struct Stages {
     pub(super) times: [Vec<StageTime>; 2],
     shown: (usize, usize),
@@ -110,7 +110,7 @@ impl Stages {
         Self { times: [0, 1].map(|parity| plan.steps(parity).map(stage).collect()), shown: (0, 0) }
     }
 
-    /// Shows the first `count` steps of a parity from now on.
+    /// Selects the first `count` steps of a parity.
     pub(super) fn show(&mut self, parity: usize, count: usize) {
         self.shown = (parity, count);
     }
@@ -131,7 +131,7 @@ mod tests {
         window.add(Duration::from_millis(7));
         let one = Duration::from_millis(7);
         assert_eq!(window.latency(), Latency { count: 1, p50: one, p90: one, p99: one, max: one });
-        // What came before the last 1024 is forgotten.
+        // Latencies before the last 1024 are forgotten.
         for i in (1..=WINDOW as u64).rev() {
             window.add(Duration::from_micros(i));
         }

@@ -1,4 +1,4 @@
-//! One face for both executors, and for neither.
+//! The executor of a stream: GPU, CPU, or none after a loss.
 
 use std::time::{Duration, Instant};
 
@@ -10,14 +10,14 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::plan::{Given, Outputs, Plan};
 
-/// How long the GPU is waited for at once, so that a loss does not go unnoticed.
+/// The longest uninterrupted wait for the GPU, so that a loss is noticed.
 const SLICE: Duration = Duration::from_millis(100);
 
-/// What computes the frames.
+/// The executor that computes the frames.
 pub(super) enum Worker {
     Gpu(Box<GpuWorker>),
     Cpu(Box<CpuWorker>),
-    /// The GPU is lost for good.
+    /// The GPU is lost and will not be reopened.
     Gone {
         adapter: String,
         reason: String,
@@ -40,7 +40,7 @@ impl Worker {
         Err(Error::DeviceLost { adapter: adapter.to_owned(), reason: reason.to_owned() })
     }
 
-    /// Fails if nothing can be computed any more.
+    /// Fails if there is no executor any more.
     pub(super) fn check(&self) -> Result<()> {
         match self {
             Self::Gone { adapter, reason } => Self::gone(adapter, reason),
@@ -48,7 +48,7 @@ impl Worker {
         }
     }
 
-    /// Copies what comes with a frame. Returns whether it replaces what the previous frame has left.
+    /// Copies a frame's inputs. Returns whether they replace the values that the previous frame has left.
     pub(super) fn fill(&mut self, plan: &Plan, slot: usize, given: &[Given<'_>]) -> Result<bool> {
         let layout = match self {
             Self::Gpu(gpu) => {
@@ -75,8 +75,8 @@ impl Worker {
         }
     }
 
-    /// Waits for a started frame, or computes it. True if it is done; false if the time has come, or on the GPU after a
-    /// while.
+    /// Waits for a started frame, or computes it. Returns true if it is done; false if the deadline has passed, or on
+    /// the GPU after a while.
     pub(super) fn advance(
         &mut self,
         plan: &Plan,
@@ -94,7 +94,7 @@ impl Worker {
         }
     }
 
-    /// Brings the results of a frame that is done to where [`Worker::outputs`] finds them.
+    /// Reads the results of a finished frame, for [`Worker::outputs`] to return.
     pub(super) fn take(&mut self, plan: &Plan, slot: usize, job: Job) -> Result<()> {
         match self {
             Self::Gpu(gpu) => gpu.take(plan, slot, job),
@@ -103,7 +103,7 @@ impl Worker {
         }
     }
 
-    /// Frees the slot of a frame that is done, without its results.
+    /// Frees the slot of a finished frame without reading its results.
     pub(super) fn release(&mut self, slot: usize) {
         if let Self::Gpu(gpu) = self {
             gpu.release(slot);

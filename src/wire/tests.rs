@@ -9,7 +9,7 @@ use super::*;
 use crate::pipeline::Invalid;
 use crate::sphere::{Grid, Heading, Sector, Threat};
 
-/// Two sectors: one that comes nearer, and one of which nothing is known.
+/// Two sectors: one that comes nearer, and an unknown one.
 fn sectors() -> Sectors {
     let grid = Grid { columns: 2, rows: 1, azimuth_rad: [-0.5, 0.5], elevation_rad: [0.2, -0.2] };
     let mut sectors = Sectors::unknown(grid);
@@ -46,7 +46,8 @@ fn message(invalid: Option<Invalid>, detail: bool) -> CueMessage {
     CueMessage::new(9, &cue, timing, detail)
 }
 
-/// Every message that there can be: valid or not, for each kind of reason, with detail or without, with all or nothing known.
+/// Every kind of message: valid or not, for each kind of reason, with or without detail, with everything or nothing
+/// known.
 fn messages() -> Vec<CueMessage> {
     let fault = crate::imu::GyroFault::Empty;
     let reasons = [
@@ -155,7 +156,7 @@ fn breach(schema: &Value, value: &Value, at: &str) -> Option<String> {
                     rule.as_array().unwrap().iter().find(|name| value.get(name.as_str().unwrap()).is_none());
                 missing.and_then(|name| wrong(&format!("{name} is missing")))
             }
-            // No member may stand in a message that the schema does not tell of.
+            // A message may have no member that the schema does not describe.
             "properties" if value.is_object() => {
                 value.as_object().unwrap().iter().find_map(|(name, member)| match rule.get(name) {
                     Some(rule) => breach(rule, member, &format!("{at}/{name}")),

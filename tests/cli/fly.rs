@@ -308,7 +308,10 @@ fn pictures_that_fail_are_said_in_the_log() {
     // From the first frame on, and for as long as it lasts.
     let reasons: Vec<&str> = during(2.0, 2.5).map(|frame| frame["invalid"].as_str().unwrap()).collect();
     assert!(reasons[0].contains("is trusted"), "{reasons:?}");
-    assert!(reasons[1..].iter().all(|why| *why == "the picture is the one before again"), "{reasons:?}");
+    assert!(
+        reasons[1..].iter().all(|why| *why == "the image is identical to the previous one"),
+        "{reasons:?}"
+    );
     assert!(during(2.45, 2.5).all(|frame| frame["source"] == "recovery"));
     assert!(during(0.5, 1.0).all(|frame| frame["invalid"].is_null()));
 }

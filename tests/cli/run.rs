@@ -115,7 +115,7 @@ fn pictures_videos_and_streams_give_the_same_lines() {
             assert_eq!(line["sectors"][list].as_array().unwrap().len(), 48, "{list}");
         }
     }
-    assert_eq!(lines[0]["invalid"], "there is no frame before it");
+    assert_eq!(lines[0]["invalid"], "no previous frame");
     assert!(lines[0]["sectors"]["ttc_s"].as_array().unwrap().iter().all(Value::is_null));
     assert!(lines[3]["sectors"]["ttc_s"].as_array().unwrap().iter().any(Value::is_f64), "{}", lines[3]);
     let [left, top] =
@@ -349,7 +349,7 @@ fn a_summary_is_what_is_left_without_lines() {
     );
     let text = run(&folder, &["a.y4m", "--fov-deg", "90"]).well().stdout;
     assert_eq!(text.lines().count(), FRAMES as usize);
-    assert!(text.starts_with("     0      0.000 s  invalid: there is no frame before it\n"), "{text}");
+    assert!(text.starts_with("     0      0.000 s  invalid: no previous frame\n"), "{text}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A file is whole or as it was before, and nothing is left beside it.
+//! Atomic writes: a file is complete or unchanged, and no temporary file is left.
 
 use std::fs;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn names(folder: &Path) -> Vec<String> {
 
 fn broken(path: &Path) -> viewsphere::Result<()> {
     write_atomic(path, |out| {
-        // More than any buffer holds, so that a part is on the disk already.
+        // More than any buffer holds, so that a part is already on disk.
         out.write_all(&vec![7; 1 << 20]).unwrap();
         Err(Error::io(path, std::io::Error::other("the disk is full")))
     })
@@ -65,7 +65,7 @@ fn what_nobody_writes_any_more_goes_with_the_next_file_of_its_name() {
     let held = fs::OpenOptions::new().write(true).open(folder.join(others[0])).unwrap();
     held.lock().unwrap();
     write_atomic(folder.join("a.txt"), |out| {
-        // Nor is that of the file itself taken for one that was left.
+        // Nor is the temporary file of the file itself taken for an abandoned one.
         write_bytes(folder.join("a.txt"), b"first").unwrap();
         out.write_all(b"second").map_err(|source| Error::io("a.txt", source))
     })

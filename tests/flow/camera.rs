@@ -1,4 +1,4 @@
-//! Cameras against OpenCV's results, and the maps of the kernels against those in `f64`.
+//! Cameras compared with OpenCV's results, and the maps of the kernels compared with those in `f64`.
 
 use std::fs;
 use std::path::Path;
@@ -11,8 +11,8 @@ use viewsphere::kernels::{remap, undistort_map};
 
 use crate::data;
 
-/// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the picture,
-/// which is why no file with it would be accepted; up to there its values can be compared.
+/// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the
+/// picture, which is why no file with it would be accepted; up to there its values can be compared.
 fn gopro() -> Camera {
     let lens = [
         -0.06174823299398439,
@@ -34,7 +34,7 @@ fn gopro() -> Camera {
     }
 }
 
-/// OpenCV's view of it that shows only what is there (`alpha` of 0).
+/// OpenCV's view of it without empty borders (`alpha` of 0).
 fn cropped() -> Camera {
     let (f_u, f_v, u_0, v_0) = (366.711644093, 455.082475999, 661.280177693, 509.805777646);
     Camera { size: Size::new(1280, 960), f_u, f_v, u_0, v_0, lens: Lens::NONE }
@@ -55,7 +55,8 @@ fn rays_are_those_of_opencv() {
     for row in rows(&folder.join("gopro_undistort_points.csv")) {
         let [u, v, x, y, r_x, r_y, r_z, _] = row[..] else { panic!("{row:?}") };
         let ray = camera.ray([u, v]);
-        // Just before the root the picture is torn apart, and beyond it OpenCV goes on, with a numerator and a denominator below 0.
+        // Just before the root the image is stretched without bound; beyond it OpenCV goes on, with a numerator and a
+        // denominator below 0.
         if x.hypot(y) > limit {
             assert_eq!(ray, None, "{u} {v}");
             hidden += 1;
@@ -148,11 +149,11 @@ fn the_undistorted_picture_is_that_of_opencv() {
     println!("{count} of {} pixels, differences of 0, 1, 2, … gray levels: {:?}", values.len(), &exact[..8]);
     assert!(count > 1_000_000 && exact[0] * 100 > 97 * count, "{:?}", &exact[..8]);
     assert!(exact[2] * 1000 <= count && exact[3..].iter().all(|n| *n == 0), "{:?}", &exact[..8]);
-    // That a gray level here and there is one further off is OpenCV's rounding of places to 1/32 px: at its places none is.
+    // Single gray levels differ by one more because OpenCV rounds places to 1/32 px: at its places none does.
     let mut rounded = map;
     for (v, rows) in rounded.chunks_exact_mut(2 * 1280).enumerate() {
         for u in 0..1280 {
-            // In `f64`, as OpenCV computes them: a ten thousandth of a pixel decides which way some are rounded.
+            // In `f64`, as OpenCV computes them: a ten-thousandth of a pixel decides the rounding of some.
             let place = raw.place_of(&out, &DMat3::IDENTITY, [u as f64, v as f64]);
             let Some(place) = place else { continue };
             for (channel, place) in place.into_iter().enumerate() {
@@ -216,7 +217,7 @@ fn the_kernel_maps_as_f64_does() {
                         (edge..640.0 - edge).contains(&p[0]) && (edge..362.0 - edge).contains(&p[1])
                     };
                     let Some(place) = place.filter(inside) else {
-                        // A pixel around the frame fades, and rounding has a thousandth.
+                        // The certainty fades over one pixel around the frame; rounding gets a thousandth.
                         let near = place.is_some_and(|p| {
                             (-1.01..641.01).contains(&p[0]) && (-1.01..363.01).contains(&p[1])
                         });
@@ -230,6 +231,6 @@ fn the_kernel_maps_as_f64_does() {
         }
     }
     println!("largest difference {worst:e} px");
-    // Half of what the kernel's two sides may differ by.
+    // Half the allowed difference of the kernel's two sides.
     assert!(worst <= 5e-4, "{worst:e}");
 }

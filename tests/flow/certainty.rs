@@ -1,4 +1,4 @@
-//! Flow of frames that come with a certainty: what is masked does no harm, and what is not masked is not changed.
+//! Flow of frames with a certainty: masked pixels do no harm, and the flow of the others does not change.
 
 use viewsphere::flow::Farneback;
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
@@ -12,7 +12,7 @@ const MOTION: [f32; 2] = [2.5, -1.25];
 /// Left, top, right and bottom of a region that does not move with the rest.
 const LOGO: [usize; 4] = [60, 45, 100, 75];
 
-/// A picture and its certainty.
+/// An image and its certainty.
 type Frame = (Image, Plane);
 
 fn farneback() -> Farneback {
@@ -50,7 +50,7 @@ fn frames(logo: bool, certainty: impl Fn(usize, usize) -> f32) -> [Frame; 2] {
     })
 }
 
-/// The flow of two pictures, with their certainty or without.
+/// The flow of two images, with or without their certainty.
 fn flow_of(on: On<'_>, farneback: Farneback, with: bool, frames: &[Frame; 2]) -> FlowField {
     let [(first, first_certainty), (second, second_certainty)] = frames;
     let certainty = with.then_some([first_certainty, second_certainty]);
@@ -92,13 +92,13 @@ fn certainty_of_one_changes_nothing() {
         let difference = largest_difference(&without, &with);
         let largest = without.data.as_flattened().iter().fold(0.0f32, |largest, d| largest.max(d.abs()));
         println!("radius {poly_n}, sigma {poly_sigma}: {difference:e} of {largest:e} px");
-        // Rounding of the expansion, some 10⁻⁴ of a gray level, through two levels of three iterations. Of
-        // the largest flow, for that of the widest neighbourhoods is small.
+        // Rounding of the expansion, some 10⁻⁴ of a gray level, through two levels of three iterations. Relative to the
+        // largest flow, because that of the widest neighbourhoods is small.
         assert!(difference < 1e-3 * largest, "radius {poly_n}, sigma {poly_sigma}: {difference} px");
     }
 }
 
-/// The equations are quadratic in the contrast, so a certainty of a half in both frames is as half the contrast.
+/// The equations are quadratic in the contrast, so a certainty of a half in both frames acts as half the contrast.
 #[test]
 fn a_certainty_of_a_half_is_as_half_the_contrast() {
     let with_bytes = |change: fn(u8) -> u8| {
@@ -110,7 +110,7 @@ fn a_certainty_of_a_half_is_as_half_the_contrast() {
     let (whole, half) = (with_bytes(|byte| byte & !1), with_bytes(|byte| byte / 2));
     let difference = largest_difference(&flow_on_cpu(false, &half), &flow_on_cpu(true, &whole));
     println!("{difference:e} px");
-    // Rounding, as where a certainty of one is held against none.
+    // Rounding, as in the comparison of a certainty of 1 with none.
     assert!(difference < 2e-3, "{difference} px");
 }
 
@@ -157,11 +157,11 @@ fn both_executors_agree() {
     let found = flow_of(On::Gpu(&gpu), farneback(), true, &frames);
     let difference = largest_difference(&expected, &found);
     println!("{difference:e} px");
-    // Rounding of the expansion, as where a certainty of one is held against none.
+    // Rounding of the expansion, as in the comparison of a certainty of 1 with none.
     assert!(difference < 2e-3, "{difference} px");
 }
 
-/// A quadratic of which a half-plane is known gives its own coefficients up to a pixel past the edge, and nothing where
+/// A quadratic that is known in a half-plane gives its own coefficients up to a pixel beyond the edge, and zero where
 /// too little is known.
 #[test]
 fn expansion_is_exact_up_to_the_edge_of_a_mask() {
@@ -173,7 +173,7 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
     let mut weighted = vec![0.0; stride * size.height as usize];
     let mut certainty = weighted.clone();
     for (i, (f, c)) in weighted.iter_mut().zip(&mut certainty).enumerate() {
-        // A mask's edge as the smoothing leaves it.
+        // A mask's edge after smoothing.
         *c = [1.0, 0.75, 0.25, 0.0][(i % stride + 1).saturating_sub(EDGE).min(3)];
         *f = *c * quadratic((i % stride) as f32, (i / stride) as f32);
     }
@@ -204,7 +204,7 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
                 let (fx, fy) = (x as f32, y as f32);
                 let [b_x, b_y] = [0.5 + 0.04 * fx + 0.03 * fy, -0.25 - 0.02 * fy + 0.03 * fx];
                 for (found, expected) in found.into_iter().zip([b_x, b_y, 0.02, -0.01, 0.03]) {
-                    // Roundings of sums of up to 130, times ten for what is left of a pivot there.
+                    // Roundings of sums of up to 130, times ten for the small pivots there.
                     assert!((found - expected).abs() < 1e-3, "at {x}, {y}: {found} for {expected}");
                 }
                 assert!(known[i] > 0.1 && known[i] < 1.0 + 1e-6, "at {x}, {y}: certainty {}", known[i]);

@@ -1,4 +1,4 @@
-//! The same bytes every time, and numbers for every legal size, setting and picture.
+//! The same bytes every time, and no NaN for any legal size, setting and image.
 
 use proptest::prelude::*;
 use viewsphere::Error;
@@ -28,7 +28,7 @@ fn finite(field: &FlowField) -> bool {
     field.data.as_flattened().iter().all(|d| d.is_finite())
 }
 
-/// Wide enough that the rows are shared out, and three levels.
+/// Wide enough that the rows are distributed over threads, with three levels.
 const LARGE: Size = Size::new(203, 151);
 
 fn same_twice(on: On<'_>) {
@@ -84,14 +84,14 @@ fn the_cpu_gives_numbers_at_every_small_size() {
 #[test]
 fn the_gpu_gives_numbers_at_small_sizes() {
     let Some(gpu) = need::gpu() else { return };
-    // Pipelines are made anew for every size, so one in three must do.
+    // Pipelines are created for every size, so one size in three must do.
     numbers_at(
         On::Gpu(&gpu),
         small_sizes().filter(|size| (size.width + size.height) % 3 == 2 || size.width > 9),
     );
 }
 
-/// Every legal parameter, as far as a plan can be checked without waiting for it.
+/// Every legal parameter for which a plan can be checked in a short time.
 fn legal() -> impl Strategy<Value = Farneback> {
     let window = prop_oneof![Just(Window::Box), Just(Window::Gaussian)];
     let update = prop_oneof![Just(Update::Flow), Just(Update::Increment)];

@@ -1,5 +1,5 @@
-//! What holds for every estimator: the same bytes every time, numbers at every size, a stream that gives the pair-wise bits, a
-//! certainty that masks, and both executors near each other.
+//! Properties of every estimator: the same bytes every time, no NaN at any size, a stream with the bits of single
+//! pairs, a certainty that masks, and both executors near each other.
 
 use viewsphere::flow::{Algorithm, Parameters};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
@@ -52,7 +52,7 @@ fn finds_a_motion_and_gives_the_same_bytes_twice(algorithm: &Algorithm) {
         assert!(bits(&first) == bits(&second), "{} on the {}", algorithm.name(), on.name());
         let errors = errors(&first, |x, y| (20..110).contains(&x) && (20..77).contains(&y));
         let median = errors[errors.len() / 2];
-        // Whole gray levels leave a few hundredths of a pixel of this texture.
+        // Rounding to whole gray levels causes errors of a few hundredths of a pixel for this texture.
         assert!(median <= 0.05, "{} on the {}: {median} px", algorithm.name(), on.name());
     });
 }
@@ -99,7 +99,7 @@ fn a_certainty_masks(algorithm: &Algorithm) {
         let mut image = moving(n, SIZE);
         for (i, value) in image.data.iter_mut().enumerate() {
             if hidden(i % width, i / width) {
-                // A pattern that stays where it is.
+                // A pattern that does not move.
                 *value = if (i % width / 3 + i / width / 3).is_multiple_of(2) { 250 } else { 5 };
             }
         }

@@ -1,4 +1,4 @@
-//! Derotation by the gyro of a real flight, against its true poses; needs the data set `euroc_v101`.
+//! Derotation by the gyro of a real flight, compared with its true poses; needs the data set `euroc_v101`.
 
 use std::path::Path;
 
@@ -50,7 +50,7 @@ fn truth(folder: &Path) -> Vec<Truth> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// Degrees by which derotated rays leave the epipolar plane, the median over a flight's trusted pixels.
+/// The median angle between derotated rays and their epipolar planes over a flight's confident pixels, in degrees.
 fn median_deg(folder: &Path, derotation: Derotation, bias: Option<DVec3>) -> f64 {
     let truth = truth(folder);
     let (body_from_camera, _) = extrinsics();
@@ -121,7 +121,7 @@ fn derotated_rays_stay_in_their_epipolar_planes() {
         println!("{derotation:?}: {median:.4}°");
         assert!(median <= 0.05, "{derotation:?}: {median}");
     }
-    // Two degrees a second too many, and the rays leave their planes.
+    // With a bias of two degrees per second the rays leave their planes.
     let wrong = median_deg(&folder, Derotation::Before, Some(DVec3::new(0.035, 0.035, 0.0)));
     println!("wrong gyro: {wrong:.4}°");
     assert!(wrong > 0.05, "{wrong}");

@@ -1,4 +1,5 @@
-//! The rotation between two exposures from a gyro's samples: against closed forms, recorded flights, and bad samples.
+//! The rotation between two exposures from a gyro's samples: compared with closed forms and recorded flights, and with
+//! bad samples.
 
 use std::path::Path;
 
@@ -10,7 +11,7 @@ use viewsphere::io::gyro_log;
 
 use crate::data;
 
-/// A motion that turns about all axes at once, ever faster and slower: yaw, pitch and roll at a time.
+/// A rotation about all axes at once with varying rates: yaw, pitch and roll at a time.
 fn angles(t: f64) -> [f64; 3] {
     [0.9 * (1.3 * t).sin() + 0.4 * t, 0.7 * (2.1 * t + 0.3).sin(), 1.1 * (1.7 * t + 1.0).sin()]
 }
@@ -91,7 +92,7 @@ fn bias_offset_and_mounting_are_taken_into_account() {
     let camera_from_gyro =
         DMat3::from_quat(DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 1.9));
     let config = GyroConfig { bias_rad_s, time_offset_s: 0.25, camera_from_gyro, ..GyroConfig::default() };
-    // The gyro's clock is a quarter of a second behind, so what it stamps t happened at t + 0.25 of the camera.
+    // The gyro's clock is a quarter of a second behind: its time t is t + 0.25 of the camera's clock.
     let to_gyro = camera_from_gyro.transpose();
     let gyro = filled(config, 400.0, |t| to_gyro * body_rate_rad_s(t + 0.25) + bias_rad_s);
     for t in [0.3, 1.0, 2.2] {
@@ -117,7 +118,7 @@ fn rotations_of_neighbouring_intervals_add_up() {
     assert!(gyro.mean_rate_rad_s(0.5, 0.5).is_err());
 }
 
-/// A gyro that was pushed samples at these times, each with a rate of 1 rad/s down.
+/// A gyro with samples at these times, each with a rate of 1 rad/s about the axis down.
 fn at(times: &[f64]) -> Gyro {
     let mut gyro = Gyro::new(GyroConfig::default()).unwrap();
     for &time_s in times {
@@ -148,7 +149,7 @@ fn what_is_not_covered_is_a_fault_with_its_reason() {
 fn a_sample_that_is_no_number_spoils_what_it_touches_and_no_more() {
     let mut gyro = at(&[1.00, 1.01]);
     gyro.push(GyroSample { time_s: 1.02, gyro_rad_s: DVec3::new(0.0, f64::NAN, 0.0) });
-    // Nothing sound has come since: the reason is the sample, not a late gyro.
+    // No valid sample has arrived since: the reason is the bad sample, not a late gyro.
     assert_eq!(gyro.prev_from_cur(1.0, 1.02), Err(GyroFault::NotANumber { time_s: 1.02 }));
     for time_s in [1.03, 1.04] {
         gyro.push(GyroSample { time_s, gyro_rad_s: DVec3::Y });
@@ -167,7 +168,7 @@ fn a_sample_that_is_no_number_spoils_what_it_touches_and_no_more() {
 fn a_sample_that_runs_backwards_spoils_what_it_touches_and_no_more() {
     let gyro = at(&[1.00, 1.01, 1.02, 1.015, 1.03, 1.04]);
     let fault = Err(GyroFault::Backwards { time_s: 1.015, after_s: 1.02 });
-    // Which of 1.02 and 1.015 is wrong cannot be known: both sides of 1.02 are spoilt.
+    // Whether 1.02 or 1.015 is wrong is unknown: both sides of 1.02 are invalid.
     assert_eq!(gyro.prev_from_cur(1.012, 1.018), fault);
     assert_eq!(gyro.prev_from_cur(1.022, 1.028), fault);
     assert!(gyro.prev_from_cur(1.00, 1.01).is_ok());
@@ -292,7 +293,7 @@ fn a_recorded_flight_agrees_with_motion_capture() {
         .collect();
     println!("degrees per frame: {errors_deg:.4?}");
     assert_eq!(errors_deg.len(), 9);
-    // What the gyro's noise and the motion capture's add up to is half of this.
+    // The noise of the gyro and the motion capture together is half of this.
     assert!(errors_deg.iter().all(|error| *error <= 0.02), "{errors_deg:?}");
 }
 
@@ -355,7 +356,7 @@ proptest! {
         for (a, b) in samples.iter().zip(&back) {
             let bits = |s: &GyroSample| {
                 let DVec3 { x, y, z } = s.gyro_rad_s;
-                // Which not-a-number it was is not written.
+                // The bits of a NaN are not written.
                 [s.time_s, x, y, z].map(|v| if v.is_nan() { f64::NAN.to_bits() } else { v.to_bits() })
             };
             prop_assert_eq!(bits(a), bits(b));

@@ -1,4 +1,5 @@
-//! What a window of increments knows better than one of the flow itself, and that it finds the same motion otherwise.
+//! Windows of increments: where they are more accurate than windows of the flow, and that they find the same motion
+//! elsewhere.
 
 use viewsphere::flow::{Farneback, Update, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
@@ -8,9 +9,9 @@ use crate::pair::{On, flow};
 
 const SIZE: Size = Size::new(160, 120);
 
-/// A frame into which the picture has moved, by a map from its pixels to those of the picture.
+/// A frame of a moved image, by a map from its pixels to those of the image.
 ///
-/// The picture's contrast rises and falls tenfold every 24 pixels, so that in most windows one side outweighs the other.
+/// The image's contrast rises and falls tenfold every 24 pixels, so that in most windows one side dominates.
 fn frame(of: impl Fn([f64; 2]) -> [f64; 2]) -> Image {
     let level = |[x, y]: [f64; 2]| {
         let waves = [[0.83, 0.31], [-0.42, 0.77], [0.57, -0.69], [0.24, 1.02]];
@@ -41,7 +42,7 @@ fn settings(update: Update, iterations: u32) -> Farneback {
     Farneback { winsize: 21, window: Window::Gaussian, iterations, update, ..Farneback::default() }
 }
 
-/// Approach: the flow grows by 0.04 px with each pixel from the middle.
+/// Approach: the flow grows by 0.04 px per pixel from the centre.
 #[test]
 fn increments_keep_what_changes_within_the_window() {
     const GROWTH: f64 = 0.04;
@@ -70,7 +71,7 @@ fn both_find_a_motion_that_is_the_same_everywhere() {
         let found = flow(On::Cpu, settings(update, 2), frames.each_ref(), None);
         let error = error_px(&found, |_| motion);
         println!("{update:?}: {error:.4} px");
-        // A twentieth of a pixel is what rounding to whole gray levels leaves of these pictures.
+        // A twentieth of a pixel: the error from rounding these images to whole gray levels.
         assert!(!(error > 0.05), "{update:?}: {error} px");
     }
 }
@@ -85,7 +86,7 @@ fn the_gpu_finds_the_same_increments() {
         let [cpu, gpu] = [On::Cpu, On::Gpu(&gpu)].map(|on| flow(on, &config, frames.each_ref(), None));
         let apart = cpu.data.as_flattened().iter().zip(gpu.data.as_flattened()).map(|(a, b)| (a - b).abs());
         let furthest = apart.fold(0.0, |most: f32, one| if one > most || one.is_nan() { one } else { most });
-        // Roundings of some 10⁻⁶ px, which each level and iteration hands on.
+        // Roundings of some 10⁻⁶ px, which each level and iteration passes on.
         assert!(!(furthest > 1e-3), "{iterations} iterations: {furthest} px");
     }
 }

@@ -1,5 +1,5 @@
-//! From files and frames to flow: readers, cameras, gyros, fields against OpenCV's and the truth, the engine, the
-//! pipeline on recorded flights, and steering.
+//! From files and frames to flow: readers, cameras, gyros, flow fields compared with OpenCV's and the truth, the
+//! engine, the pipeline on recorded flights, and steering.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod atomic;

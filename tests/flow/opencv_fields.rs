@@ -1,4 +1,4 @@
-//! Every field that OpenCV computed of the made-up pairs and of a real one, found again on both executors.
+//! OpenCV's flow fields of synthetic pairs and of a real one, compared with both executors'.
 
 use std::path::Path;
 
@@ -12,12 +12,12 @@ use viewsphere::kernels::compare::{Difference, compare};
 use crate::pair::{On, flow};
 use crate::{data, need};
 
-/// How far a vector may be from OpenCV's. The promise for any pair is 10⁻⁴ px in the mean and 10⁻² px in 99.9 of 100
-/// vectors; these pairs are well conditioned, so that much less can be asked: OpenCV's own fields move by some 1e-5 px with
-/// the processor's instructions; ours were 4e-5 px away at most, and another GPU rounds otherwise.
+/// The largest allowed distance of a vector from OpenCV's. The promise for any pair is 10⁻⁴ px in the mean and 10⁻² px
+/// in 99.9 of 100 vectors; these pairs are well conditioned, so that a tighter bound holds: OpenCV's own fields move by
+/// some 1e-5 px with the processor's instructions; ours were 4e-5 px away at most, and another GPU rounds otherwise.
 const BOUND: Bound = Bound { absolute: 2e-4, relative: 0.0, own: Vec::new() };
 
-/// How far the vectors may be from OpenCV's in the mean, px: 1.4e-6 was measured.
+/// The largest allowed mean distance of vectors from OpenCV's, px: 1.4e-6 was measured.
 const MEAN: f64 = 5e-6;
 
 struct Case {

@@ -1,4 +1,4 @@
-//! The flow of one pair of pictures, on either executor.
+//! The flow of one pair of images, on either executor.
 
 use viewsphere::Backend;
 use viewsphere::flow::{self, Algorithm, FlowOptions, Initial};
@@ -8,7 +8,7 @@ use viewsphere::kernels::compare::POISON;
 use viewsphere::plan::{Content, Value};
 use viewsphere::runner::Runner;
 
-/// What runs a plan.
+/// The executor of a plan.
 #[derive(Clone, Copy)]
 pub(crate) enum On<'a> {
     Cpu,
@@ -31,11 +31,11 @@ impl On<'_> {
     }
 }
 
-/// What comes with the pictures.
+/// The inputs beside the images.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Beside<'a> {
     pub(crate) initial_flow: Option<&'a FlowField>,
-    /// Of each picture.
+    /// The certainty of each image.
     pub(crate) certainty: Option<[&'a Plane; 2]>,
 }
 
@@ -49,9 +49,9 @@ pub(crate) fn flow(
     flow_with(on, algorithm, images, Beside { initial_flow, certainty: None })
 }
 
-/// The flow from the first picture to the second, with what comes beside them.
+/// The flow from the first image to the second, with further inputs.
 ///
-/// Everything that the plan computes is poisoned first, so that a step that reads what none has written shows.
+/// All computed buffers are poisoned first, so that a step that reads an unwritten value is found.
 pub(crate) fn flow_with(
     on: On<'_>,
     algorithm: impl Into<Algorithm>,

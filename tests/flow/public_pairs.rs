@@ -1,4 +1,4 @@
-//! The errors of our fields on public pairs with known truth, against published figures of OpenCV's fields.
+//! The errors of our flow fields on public pairs with known truth, compared with the errors of OpenCV's fields.
 #![allow(clippy::approx_constant, reason = "an error of 3.14° has nothing to do with π")]
 
 use std::path::{Path, PathBuf};
@@ -85,7 +85,7 @@ fn settings() -> [(&'static str, Farneback); 3] {
     [("light", light), ("heavy", heavy), ("heavy-gauss", gauss)]
 }
 
-/// A picture in gray as the figures were computed from: OpenCV's PNG reader truncates its weights of red, green and
+/// A gray image as the figures were computed from: OpenCV's PNG reader truncates its weights of red, green and
 /// blue, where this crate's own conversion rounds.
 fn gray(path: &Path) -> Image {
     let image = picture::read(path).unwrap();
@@ -151,8 +151,8 @@ fn the_gpu_errs_as_opencv_does() {
     check(On::Gpu(&gpu), &["light", "heavy-gauss"]);
 }
 
-/// At most so much of the error of OpenCV's field with the light setting is left by one iteration of increments, pair by pair:
-/// what was found is 0.83, 0.78, 0.86, 0.27 and 0.43 of it.
+/// The largest allowed error of one iteration of increments, as a share of the error of OpenCV's field with the light
+/// setting, pair by pair: measured are 0.83, 0.78, 0.86, 0.27 and 0.43.
 #[test]
 fn increments_err_less() {
     const SHARES: [f64; 5] = [0.85, 0.8, 0.9, 0.3, 0.45];

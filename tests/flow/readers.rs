@@ -1,5 +1,5 @@
-//! Every reader against files that are cut off, empty, of another kind, too large or simply noise: one error that names
-//! the file, never a panic, never memory for what a header only promises.
+//! Every reader with files that are truncated, empty, of another kind, too large or noise: one error that names the
+//! file, never a panic, and no memory for data that a header only promises.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use viewsphere::{Error, Result};
 
 const NAME: &str = "some-file";
 
-/// What a reader found, reduced to something that all of them have: the values as bytes.
+/// A reader's result in a common form: the values as bytes.
 type Reader = fn(&[u8]) -> Result<Vec<u8>>;
 
 fn flow_bytes(flow: FlowField) -> Vec<u8> {
@@ -32,7 +32,7 @@ fn video_bytes(bytes: &[u8]) -> Result<Vec<u8>> {
     Ok(all)
 }
 
-/// A reader, the bytes of a small whole file, and how many bytes its end may lack without a loss.
+/// A reader, the bytes of a small complete file, and the number of bytes that may be missing at its end without a loss.
 struct Case {
     name: &'static str,
     read: Reader,
@@ -147,7 +147,7 @@ fn other_kinds_and_empty_files_are_refused() {
     }
 }
 
-/// A PNG whose header states another size, with the checksum of the header right.
+/// A PNG whose header states another size, with a correct checksum of the header.
 fn png_of(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = picture::encode_png(&gray()).unwrap();
     bytes[16..20].copy_from_slice(&width.to_be_bytes());
@@ -197,7 +197,7 @@ fn headers_that_promise_too_much_are_refused_at_once() {
         names_the_file(&picture(&png_of(w, h)).unwrap_err(), "png");
     }
     names_the_file(&picture(b"P5 0 0 255 ").unwrap_err(), "pnm");
-    // Legal sizes that no file of this length can hold: found before the pixels are asked for.
+    // Legal sizes that no file of this length can hold: found before the pixels are read.
     let short: [&[u8]; 4] =
         [&png_of(16384, 16384), b"P5 16384 16384 255 x", b"P6 16384 16384 65535 x", b"P4 16384 16384 x"];
     for bytes in short {
@@ -211,7 +211,7 @@ fn headers_that_promise_too_much_are_refused_at_once() {
     jpeg[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
     let text = picture(&jpeg).unwrap_err().to_string();
     assert!(text.contains("size is 16384×16384"), "{text}");
-    // A stream has no length to check, but the memory grows only with what comes.
+    // A stream has no length to check, but the memory grows only with the data received.
     names_the_file(&video_bytes(b"YUV4MPEG2 W16384 H16384 Cmono16\nFRAME\nabc").unwrap_err(), "y4m");
     names_the_file(&video_bytes(b"YUV4MPEG2 W16385 H16384\nFRAME\nabc").unwrap_err(), "y4m");
 }
@@ -322,7 +322,7 @@ proptest! {
         prop_assert_eq!(count(raw), bytes.len() / 35);
     }
 
-    /// Noise behind a right beginning, and single wrong bytes, go deeper than noise alone.
+    /// Noise after a correct header, and single wrong bytes, test deeper than noise alone.
     #[test]
     fn damaged_files_never_panic(
         keep in 0.0..1.0_f64,
@@ -360,7 +360,7 @@ proptest! {
     }
 }
 
-/// How many whole frames come before the end or the error.
+/// The number of complete frames before the end or the error.
 fn count(mut raw: RawReader<&[u8]>) -> usize {
     let mut image = Image::default();
     while matches!(raw.next_frame(&mut image), Ok(true)) {}

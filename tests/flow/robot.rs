@@ -1,4 +1,4 @@
-//! Time to contact of a real flying robot, against motion capture; needs the data set `opticflow_direct`.
+//! Time to contact of a real flying robot, compared with motion capture; needs the data set `opticflow_direct`.
 
 use viewsphere::camera::{Camera, Lens};
 use viewsphere::flow::Farneback;
@@ -10,17 +10,17 @@ use viewsphere::{Backend, Pipeline, PipelineConfig};
 use crate::data;
 use crate::quantile::quantile;
 
-/// Frames a second.
+/// Frames per second.
 const RATE_HZ: f64 = 60.0;
-/// What is trusted less is not compared: towards the end the floor is near, and the pictures are a blur.
+/// The least confidence that is compared: towards the end the floor is near, and the images are blurred.
 const LEAST_CONFIDENCE: f32 = 0.15;
 
-/// A camera of about the right field of view: what is compared does not depend on it.
+/// A camera of about the right field of view: the compared rates do not depend on it.
 fn camera() -> Camera {
     Camera { size: Size::new(320, 240), f_u: 300.0, f_v: 300.0, u_0: 159.5, v_0: 119.5, lens: Lens::NONE }
 }
 
-/// The rate at which the ground comes nearer, 1/s, half-way between each frame and the one before.
+/// The rate at which the ground comes nearer, 1/s, half-way between each frame and the previous one.
 fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
     let config = PipelineConfig {
         algorithm: Farneback::accurate().into(),
@@ -39,7 +39,7 @@ fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
         let time_s = f64::from(number) / RATE_HZ;
         let cue = pipeline.process(&frame, time_s).unwrap_or_else(|error| panic!("{error}"));
         let Some(looming) = cue.looming else { continue };
-        // The cell in the middle, where the divergence on the sphere is that in the plane: 2/τ over flat ground below.
+        // The central cell, where the divergence on the sphere equals that in the plane: 2/τ over flat ground below.
         let stride = cells.size.stride();
         let at = |channel: usize| looming[(4 * 15 + channel) * stride + 20];
         if at(3) >= LEAST_CONFIDENCE {
@@ -49,7 +49,7 @@ fn measured(folder: &std::path::Path) -> Vec<(f64, f64)> {
     rates
 }
 
-/// Frame number and rate of coming nearer by motion capture.
+/// Frame number and rate of approach by motion capture.
 fn truth(folder: &std::path::Path) -> Vec<(f64, f64)> {
     let path = folder.join("derived_mocap_per_frame.csv");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{error}"));

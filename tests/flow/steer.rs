@@ -1,4 +1,4 @@
-//! Steering from made-up views: signs, limits, memory, and what is done without a cue.
+//! Steering from synthetic views: signs, limits, memory, and the behaviour without a cue.
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, FRD_FROM_CAMERA, Lens, world_from_body};
@@ -16,7 +16,7 @@ fn grid() -> Grid {
     Grid::over(&camera, [32, 24]).unwrap()
 }
 
-/// What is seen of balls, given from the camera, by a camera that flies straight ahead.
+/// The view of balls, given in the camera's frame, from a camera that flies straight ahead.
 fn view(balls_camera_m: &[(DVec3, f64)]) -> Sectors {
     let mut sectors = Sectors::unknown(grid());
     sectors.interval_s = 1.0 / 30.0;
@@ -54,7 +54,7 @@ fn steering(policy: Policy, danger: Danger) -> Steering {
     Steering::new(SteerParams { policy, danger, ..SteerParams::default() }.into()).unwrap()
 }
 
-/// Something large ahead, more of it to the right (1) or to the left (−1).
+/// A large obstacle ahead, more of it to the right (1) or to the left (−1).
 fn ahead(side: f64) -> Vec<(DVec3, f64)> {
     (0..8).map(|i| (DVec3::new(side * (2.0 * f64::from(i) - 2.0), 0.0, 22.0), 2.5)).collect()
 }
@@ -104,7 +104,7 @@ fn an_altitude_is_returned_to() {
     }
 }
 
-/// Banked or not, the map is level: what stands ahead at the height of the eye lies in the middle of it.
+/// Banked or not, the map is level: an obstacle ahead at the camera's height lies on its horizon.
 #[test]
 fn the_map_is_level_whatever_the_bank() {
     for roll in [-0.9, -0.3, 0.0, 0.5, 1.0] {
@@ -128,20 +128,21 @@ fn the_map_is_level_whatever_the_bank() {
 
 #[test]
 fn what_has_left_the_view_is_remembered_for_a_while() {
-    // What a map keeps of the frame before stays where it was ahead; so sudden a turn would carry it along.
+    // The map's memory of the previous frame is relative to the direction of motion; so sudden a rotation would carry
+    // it along.
     let params = SteerParams { smoothing: 1.0, ..SteerParams::default() };
     let mut steering = Steering::new(params.into()).unwrap();
     let seen = view(&[(DVec3::new(7.0, 0.0, 10.0), 1.5)]);
     steering.update(&observation(0.0, DMat3::IDENTITY, Some(&seen)));
     let before = steering.obstacles().len();
     assert!(before > 0);
-    // The aircraft looks away to the left: what was there is beyond the right border now.
+    // The aircraft turns to the left: the obstacle is now beyond the right border.
     let away = world_from_body(0.0, 0.0, -0.9);
     let nothing = view(&[]);
     steering.update(&observation(1.0 / 30.0, away, Some(&nothing)));
     let remembered = steering.obstacles().to_vec();
     assert!(!remembered.is_empty() && remembered.len() <= before);
-    // It has flown on by 0.4 m meanwhile, so that all of it is nearer.
+    // It has flown on by 0.4 m meanwhile, so that all obstacles are nearer.
     assert!(remembered.iter().all(|o| (8.0..13.5).contains(&o.place_ned_m.length())), "{remembered:?}");
     steering.update(&observation(2.0, away, Some(&nothing)));
     assert!(steering.obstacles().is_empty());

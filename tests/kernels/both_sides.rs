@@ -1,4 +1,4 @@
-//! Every kernel of the registry: its shader against naga's checks, and its two sides against each other.
+//! Every kernel of the registry: naga's checks of its shader, and the comparison of its two sides.
 
 use std::ops::ControlFlow;
 
@@ -13,7 +13,7 @@ fn compare_sides(kernel: &Kernel) {
     let Some(gpu) = need::gpu() else { return };
     sides::compare_sides(&gpu, kernel, |sides::Compared { what, difference, as_default }| {
         assert!(difference.breaches == 0, "{what}: {difference:?}");
-        // So far variants differ in workgroups alone, and that leaves every pixel's arithmetic as it is.
+        // So far variants differ in workgroups only, which does not change any pixel's arithmetic.
         assert!(as_default, "{what}: other bits than the default variant's");
         println!("{what}: max {:e}", difference.max);
         ControlFlow::Continue(())

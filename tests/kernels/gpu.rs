@@ -13,7 +13,7 @@ use viewsphere::kernels::{luma, premultiply, window_y};
 
 use crate::need::{self, Without};
 
-/// A device of its own: with the pipelines of the shared one nothing can be counted.
+/// A separate device: the shared one's pipelines would spoil the counts.
 fn open(pipeline_cache: Option<&Path>) -> Option<Gpu> {
     let adapter = Some(need::gpu()?.adapter().name.clone());
     let pipeline_cache = pipeline_cache.map(Path::to_owned);
@@ -143,7 +143,7 @@ fn constants_that_do_not_fit_the_shader_are_refused() {
     assert_eq!(gpu.pipelines(), 0);
 }
 
-/// The one file of a folder, and what it holds.
+/// The only file of a folder, and its content.
 fn only_file(folder: &Path) -> (std::path::PathBuf, Vec<u8>) {
     let files: Vec<_> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     let [file] = files.as_slice() else { panic!("{files:?}") };
@@ -163,7 +163,7 @@ fn pipelines_are_kept_on_disk_and_a_damaged_file_is_replaced() {
     assert!(!cache.exists(), "nothing is written before something was compiled");
     let expected = run(&gpu, &luma::KERNEL).unwrap();
     let (file, whole) = only_file(&cache);
-    // As is and with every kind of damage: the same result, and a file that is whole again.
+    // Undamaged and with every kind of damage: the same result, and an intact file afterwards.
     let half = whole[..whole.len() / 2].to_vec();
     let mut changed = whole.clone();
     *changed.last_mut().unwrap() ^= 1;
@@ -195,7 +195,7 @@ fn a_folder_that_cannot_be_written_is_no_error() {
     assert_eq!(only_file(folder.path()).0, file);
 }
 
-/// Polls a future, and the device in between, as a caller with a loop of its own does.
+/// Polls a future, and the device in between, as a caller with its own loop does.
 fn drive<F: Future>(gpu: Option<&Gpu>, future: F) -> F::Output {
     let mut future = std::pin::pin!(future);
     let mut context = Context::from_waker(Waker::noop());

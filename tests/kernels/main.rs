@@ -1,4 +1,4 @@
-//! The kernels: each shader against its reference, against deliberate mistakes, and against formulas.
+//! The kernels: each shader is compared with its reference, with deliberate mistakes, and with formulas.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod both_sides;

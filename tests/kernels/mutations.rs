@@ -1,5 +1,5 @@
-//! The test of the tests: shaders with one mistake each, which the comparison with the reference or the check against
-//! the Rust side must find.
+//! Mutation tests: shaders with one mistake each, which the comparison with the reference or the check against the Rust
+//! side must find.
 
 use std::ops::ControlFlow;
 
@@ -16,15 +16,15 @@ use viewsphere::kernels::{
 use crate::need;
 use crate::sides::{Compared, compare_sides};
 
-/// The kernel with one piece of its shader replaced. The piece stands there once, so that the mutant is what it says.
+/// The kernel with one piece of its shader replaced. The piece must occur exactly once.
 fn mutant(kernel: &Kernel, from: &str, to: &str) -> Kernel {
     let found = kernel.source.matches(from).count();
     assert_eq!(found, 1, "{}: {from:?} stands in the shader so many times", kernel.name);
-    // A kernel's text lives as long as the program; that of a few mutants may, too.
+    // A kernel's text is static; the texts of a few mutants may live as long.
     Kernel { source: kernel.source.replacen(from, to, 1).leak(), ..*kernel }
 }
 
-/// Mistakes that leave a shader valid: only its results tell.
+/// Mistakes that leave a shader valid: only its results show them.
 #[rustfmt::skip]
 const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&luma::KERNEL, "19235u", "19236u"),
@@ -178,7 +178,7 @@ fn every_kernel_has_a_mistake_to_find() {
     }
 }
 
-/// A row that is never stored shows as the poison that was there before, whatever the right values are.
+/// A row that is never stored keeps the poison, whatever the right values are.
 #[test]
 fn a_row_never_stored_is_found_as_poison() {
     let Some(gpu) = need::gpu() else { return };

@@ -1,4 +1,4 @@
-//! The two sides of a kernel, run on the kernel's own cases and held against each other.
+//! The two sides of a kernel, run on the kernel's own cases and compared.
 
 use std::ops::ControlFlow;
 
@@ -8,7 +8,7 @@ use viewsphere::gpu::{Gpu, Tuning};
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::compare::{Difference, POISON, compare};
 
-/// The smallest picture, one with a part of a vector and of a workgroup, one just over whole ones, and a large odd one.
+/// The smallest image, one with a partial vector and workgroup, one just over whole ones, and a large odd one.
 pub(crate) const SIZES: [Size; 4] =
     [Size::new(1, 1), Size::new(7, 5), Size::new(65, 33), Size::new(641, 363)];
 
@@ -16,14 +16,14 @@ pub(crate) const SIZES: [Size; 4] =
 pub(crate) struct Compared {
     /// Kernel, variant, size, case and output.
     pub(crate) what: String,
-    /// How far the shader is from the reference.
+    /// The difference between shader and reference.
     pub(crate) difference: Difference,
-    /// Whether the bits are those of the default variant.
+    /// Whether the bits equal those of the default variant.
     pub(crate) as_default: bool,
 }
 
-/// Runs the reference and every variant of the shader on every case at every size, small ones first, until `seen` breaks
-/// off.
+/// Runs the reference and every variant of the shader on every case at every size, small ones first, until `seen`
+/// breaks.
 pub(crate) fn compare_sides(
     gpu: &Gpu,
     kernel: &Kernel,

@@ -13,7 +13,7 @@ const SIZE: Size = Size::new(320, 240);
 /// A focal length at which the corners lie 75 degrees off the axis.
 const FOCAL: f64 = 53.0;
 
-/// Runs a kernel of the sphere on the CPU, and on the GPU where there is one.
+/// Runs a kernel of the sphere on the CPU, and on the GPU if there is one.
 fn run(kernel: &Kernel, params: &[u8], inputs: &[&[f32]], size: Size, channels: usize) -> Vec<Vec<f32>> {
     let len = channels * size.stride() * size.height as usize;
     let mut reference = vec![f32::NAN; len];
@@ -38,7 +38,8 @@ fn ray(x: f64, y: f64) -> DVec3 {
     DVec3::new((x - 159.5) / FOCAL, (y - 119.5) / FOCAL, 1.0)
 }
 
-/// The displacement of every pixel back to the frame before, in a world of points at these distances, and the bearings.
+/// The displacement of every pixel back to the previous frame, in a world of points at these distances, and the
+/// bearings.
 fn world(prev_from_cur: DMat3, moved: DVec3) -> (Vec<f32>, Vec<[DVec3; 2]>) {
     let stride = SIZE.stride();
     let mut flow = vec![0.0; 2 * stride * SIZE.height as usize];
@@ -51,7 +52,7 @@ fn world(prev_from_cur: DMat3, moved: DVec3) -> (Vec<f32>, Vec<[DVec3; 2]>) {
             let place = before / before.z * FOCAL;
             flow[2 * y * stride + x] = (place.x + 159.5 - x as f64) as f32;
             flow[(2 * y + 1) * stride + x] = (place.y + 119.5 - y as f64) as f32;
-            // What the camera before, turned like the one now, would have seen.
+            // The bearing in the previous camera, rotated like the current one.
             bearings.push([(point + moved).normalize(), current.normalize()]);
         }
     }
@@ -71,7 +72,7 @@ fn the_spherical_flow_is_that_of_the_moved_points() {
         let mut behind = 0;
         for (i, [before, now]) in bearings.iter().enumerate() {
             let (x, y) = (i % SIZE.width as usize, i / SIZE.width as usize);
-            // A place just before the camera's side is thousands of pixels away, where f32 has no digits for it.
+            // A place almost beside the camera is thousands of pixels away, where f32 has too few digits.
             if (prev_from_cur * *before).z < 0.2 {
                 behind += 1;
                 continue;
@@ -81,7 +82,7 @@ fn the_spherical_flow_is_that_of_the_moved_points() {
             let error = (DVec3::new(at(0), at(1), at(2)) - expected).length() / expected.length();
             largest = largest.max(error);
         }
-        // 1e-4 of the flow; what moves the camera makes at least a hundredth of a radian here.
+        // 1e-4 of the flow, which is at least a hundredth of a radian here.
         assert!(largest <= 1e-4, "{largest}");
         assert!(behind < 2000, "{behind} of {} left out", bearings.len());
     }
@@ -98,14 +99,14 @@ fn a_turn_alone_leaves_nothing() {
             let largest = found.iter().fold(0.0, |largest: f32, value| largest.max(value.abs()));
             assert!(largest < 2e-6, "{largest}");
         }
-        // And it is a turn: the corners move by some ten pixels.
+        // The rotation is a large one: the corners move by some ten pixels.
         let longest = flow.iter().fold(0.0, |longest: f32, value| longest.max(value.abs()));
         assert!(longest > 10.0, "{longest}");
     }
 }
 
-/// Largest errors of the divergence and of the nearness rate over cells this far apart, relative to what they are straight
-/// ahead, in front of a slanted plane. On every executor.
+/// Largest errors of the divergence and of the nearness rate over cells this far apart, relative to their values
+/// straight ahead, in front of a slanted plane. On every executor.
 fn errors_of_cells(pitch: f64) -> Vec<[f64; 2]> {
     // 50 degrees off the axis at the corners, whatever the pitch.
     let side = (1.6 / pitch) as u32;

@@ -108,11 +108,11 @@ fn with_faults(backends: [Backend; 2], faults: &[&str]) -> Vec<Record> {
 #[test]
 fn each_fault_is_said_within_a_frame_and_passes() {
     for (fault, reason) in [
-        ("frozen", "the picture is the one before again"),
+        ("frozen", "the image is identical to the previous one"),
         ("black", "is trusted"),
         ("gyro-lost", "gyro"),
-        ("gyro-bias=5", "the flow turns by"),
-        ("nan", "NaN s since the frame before"),
+        ("gyro-bias=5", "the flow shows a rotation of"),
+        ("nan", "NaN s since the previous frame"),
     ] {
         let records = with_fault(CPU, fault);
         assert_eq!(records.len(), 36, "{fault}");

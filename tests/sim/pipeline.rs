@@ -128,7 +128,7 @@ fn a_gyro_that_is_silent_or_wrong_spoils_its_frames_only() {
             let cue = good(pipeline.process(&good(image.frame()), *time_s));
             reasons.push(cue.invalid.map(|invalid| invalid.to_string()));
         }
-        assert_eq!(reasons[0].as_deref(), Some("there is no frame before it"));
+        assert_eq!(reasons[0].as_deref(), Some("no previous frame"));
         reasons.split_off(1)
     };
     let none: Vec<Option<String>> = vec![None; 7];

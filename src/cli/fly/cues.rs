@@ -22,7 +22,7 @@ mod tests {
     #[test]
     fn the_reason_is_told_where_most_frames_have_no_cue() {
         let reasons =
-            ["the frame before was lost", "0.001 of the view is trusted", "0.000 of the view is trusted"];
+            ["the previous frame was lost", "0.001 of the view is trusted", "0.000 of the view is trusted"];
         assert_eq!(text(0.03, reasons.into_iter()), "3.0 % of the frames without one");
         assert_eq!(
             text(1.0, reasons.into_iter()),

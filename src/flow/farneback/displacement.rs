@@ -1,4 +1,4 @@
-//! What is computed of two frames: on each level, coarse to fine, the equations, their average and their solution.
+//! The steps of a pair of frames: on each level, coarse to fine, the equations, their average and their solution.
 
 use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Outside, Update, Window};
@@ -14,10 +14,10 @@ pub(super) struct Displacement {
     coarse_to_fine: CoarseToFine,
     finest: Level,
     iterations: u32,
-    /// Whether an iteration adds to the flow so far.
+    /// Whether an iteration adds its result to the flow so far.
     adds: bool,
     radius: u32,
-    /// How much what is outside the second frame counts.
+    /// The weight of pixels whose place is outside the second frame.
     outside: f32,
     window_y: BufId,
     window_x: BufId,
@@ -28,7 +28,7 @@ pub(super) struct Displacement {
 
 /// The buffers of the confidence.
 struct Evidence {
-    /// Where frames come without a certainty, one that is the same everywhere.
+    /// A constant certainty, for frames without one.
     certainty: Option<BufId>,
     confidence: BufId,
 }
@@ -59,13 +59,13 @@ impl Displacement {
         }
     }
 
-    /// Where the confidence goes.
+    /// The plane of the confidence.
     pub(super) fn confidence(&self) -> Option<BufId> {
         self.evidence.as_ref().map(|evidence| evidence.confidence)
     }
 
-    /// The flow from the picture in the first of two slots to that in the second. It begins with the given one, if the
-    /// estimator takes one.
+    /// The flow from the image in the first slot to the image in the second. The search begins with the given flow, if
+    /// the estimator takes one.
     pub(super) fn steps(
         &self,
         expansions: &Expansions,
@@ -141,7 +141,7 @@ impl Displacement {
         });
     }
 
-    /// The confidence in the finest level's flow.
+    /// The steps that compute the confidence of the finest level's flow.
     fn judge(
         &self,
         steps: &mut Vec<Step>,

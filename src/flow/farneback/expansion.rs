@@ -1,4 +1,4 @@
-//! What is computed of one frame alone: its pyramid, and each level's polynomial expansion.
+//! The steps of one frame alone: its pyramid, and the polynomial expansion of each level.
 
 use super::Farneback;
 use super::normalized::Normalized;
@@ -9,22 +9,22 @@ use crate::kernels::tables::{self, Applicability};
 use crate::kernels::{expansion_x, expansion_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
-/// Where a level's expansion lies: `f(x) ≈ xᵀA x + bᵀx + c`.
+/// The buffers of a level's expansion `f(x) ≈ xᵀA x + bᵀx + c`.
 #[derive(Clone, Copy)]
 pub(super) struct Expansion {
     /// b_x, b_y, A_xx, A_yy of each pixel.
     pub(super) quad: BufId,
     /// 2 A_xy of each pixel.
     pub(super) cross_term: BufId,
-    /// How certain it is, where frames come with a certainty.
+    /// Its certainty, if frames have a certainty.
     pub(super) certainty: Option<BufId>,
 }
 
 /// The buffers of this part of the plan.
 pub(super) struct Expansions {
-    /// Of each level, finest first, for both slots.
+    /// For each level, finest first, the expansions in both slots.
     pub(super) levels: Vec<[Expansion; 2]>,
-    /// What a certainty adds.
+    /// The further buffers that a certainty needs.
     pub(super) normalized: Option<Normalized>,
     size: Size,
     radius: u32,
@@ -32,7 +32,7 @@ pub(super) struct Expansions {
     weights_y: BufId,
     weights_x: BufId,
     image: BufId,
-    /// Of the expansion without certainty.
+    /// The tables of the expansion without certainty.
     moments: Option<BufId>,
     pyramid: Pyramid,
     sizes: Vec<Size>,
@@ -79,7 +79,7 @@ impl Expansions {
         }
     }
 
-    /// The expansion of a gray picture into this slot. Its certainty is needed if the estimator takes one.
+    /// The steps that expand a gray image into this slot. Its certainty is required if the estimator takes one.
     pub(super) fn steps(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
         let mut steps = Vec::new();
         let pictures = match (&self.normalized, certainty) {

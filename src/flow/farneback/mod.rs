@@ -14,39 +14,41 @@ use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::plan::{BufId, Bufs, Step};
 
-/// The window over which a pixel's neighbours are taken to move alike.
+/// The window within which a pixel's neighbours are assumed to move alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Window {
-    /// All neighbours count the same.
+    /// All neighbours have the same weight.
     Box,
-    /// Near neighbours count more; the standard deviation is `0.3 · (winsize / 2)` pixels.
+    /// Near neighbours have more weight; the standard deviation is `0.3 · (winsize / 2)` pixels.
     Gaussian,
 }
 
-/// What an iteration's window averages, with the flow so far d, Δb = −½ (b2(x + d) − b1(x)), and A the mean of both frames'.
+/// The quantity that an iteration's window averages. d is the flow so far, Δb = −½ (b2(x + d) − b1(x)), and A the mean
+/// of both frames'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Update {
-    /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as Farnebäck and OpenCV do. Where the flow changes within the window, what has
-    /// the most contrast decides.
+    /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as Farnebäck and OpenCV do. Where the flow changes within the window, the
+    /// pixels with the most contrast dominate.
     Flow,
-    /// What is added to it: `d + (Σ AᵀA)⁻¹ Σ AᵀΔb`. What the flow so far knows of such changes is kept, so that a window
-    /// may be wider for the same detail, and fewer iterations do. One to three suit it: with each, finer detail of flow and
-    /// of noise remains. After one, [`Window::Box`] is refused: it turns round what has waves a little shorter than itself
-    /// (its spectrum is there down to −0.22), and each further iteration makes more of those. Where there is no texture at
-    /// all, as in a cloudless sky, noise is what remains, where [`Update::Flow`] finds next to no motion.
+    /// The increment of the flow: `d + (Σ AᵀA)⁻¹ Σ AᵀΔb`. Changes within the window that the flow so far contains are
+    /// kept, so that a window may be wider for the same detail, and fewer iterations suffice. One to three are
+    /// suitable: each adds finer detail of flow and of noise. With more than one, [`Window::Box`] is refused: it
+    /// inverts the sign of waves a little shorter than itself (its spectrum falls to −0.22 there), and each further
+    /// iteration amplifies them. Where there is no texture at all, as in a cloudless sky, noise remains, where
+    /// [`Update::Flow`] finds nearly zero motion.
     Increment,
 }
 
-/// What a pixel counts for whose place, where the flow so far leads, is outside the second frame.
+/// The treatment of a pixel that the flow so far takes outside the second frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Outside {
-    /// The first frame's expansion stands alone, with half its slope in place of the difference, as in OpenCV: what is found
-    /// there is arbitrary, and a confidence tells it from the rest.
+    /// The first frame's expansion is used alone, with half its slope in place of the difference, as in OpenCV. The
+    /// flow there is arbitrary; the confidence marks it as such.
     First,
-    /// Nothing: the window's other pixels decide.
+    /// The pixel is left out: the window's other pixels decide.
     Nothing,
 }
 
@@ -57,23 +59,23 @@ pub enum Outside {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Farneback {
-    /// A level's size against the next finer one, in (0, 1).
+    /// The size of a level relative to the next finer one, in (0, 1).
     pub pyr_scale: f64,
-    /// Levels beside the full picture, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
+    /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
     pub levels: u32,
-    /// Width of the window in pixels, 2 to 1024. An even one reaches as far as the next odd one.
+    /// Width of the window in pixels, 2 to 1024. An even width extends as far as the next odd one.
     pub winsize: u32,
     /// Iterations on each level, 1 to 1000.
     pub iterations: u32,
-    /// Radius of the polynomial expansion's neighbourhood in pixels, 1 to 32. Usual are 5 and 7.
+    /// Radius of the polynomial expansion's neighbourhood in pixels, 1 to 32; usually 5 or 7.
     pub poly_n: u32,
     /// Standard deviation of the expansion's Gaussian in pixels, 0 to 100; 0 stands for `0.3 · poly_n`.
     pub poly_sigma: f64,
     /// The window's shape.
     pub window: Window,
-    /// What is averaged.
+    /// The quantity that the window averages.
     pub update: Update,
-    /// What happens outside the second frame.
+    /// The treatment of pixels outside the second frame.
     pub outside: Outside,
 }
 
@@ -104,8 +106,8 @@ impl Farneback {
         Self { levels: 5, winsize: 13, iterations: 10, poly_sigma: 1.1, ..Self::default() }
     }
 
-    /// One iteration of [`Update::Increment`] over a Gaussian window of 31 px, [`Outside::Nothing`]: about half the default's
-    /// work and .27 to .86 of its error on public pairs; made for scenes that have texture everywhere.
+    /// One iteration of [`Update::Increment`] over a Gaussian window of 31 px, [`Outside::Nothing`]: about half the
+    /// default's work and .27 to .86 of its error on public pairs. Meant for scenes with texture everywhere.
     pub fn increment() -> Self {
         Self {
             winsize: 31,

@@ -1,19 +1,19 @@
-//! A frame's expansion where its pixels come with a certainty: by normalised convolution.
+//! The expansion of a frame whose pixels have a certainty, by normalised convolution.
 
 use crate::flow::Level;
 use crate::frame::Size;
 use crate::kernels::{normalized_expansion_x, normalized_expansion_y, premultiply};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
-/// The buffers that only a certainty needs.
+/// The buffers that are needed only with a certainty.
 pub(super) struct Normalized {
-    /// The gray picture times its certainty, and the certainty within its range.
+    /// The gray image times its certainty, and the certainty clamped to its range.
     weighted: BufId,
     certainty: BufId,
-    /// The certainty as a level sees it.
+    /// The certainty reduced to a level.
     level: BufId,
     moments: BufId,
-    /// Of each level's expansion, finest first, for both slots.
+    /// The certainty of each level's expansion, finest first, in both slots.
     expansions: Vec<[BufId; 2]>,
 }
 
@@ -34,17 +34,18 @@ impl Normalized {
         }
     }
 
-    /// What is smoothed and reduced for each level, and where to, if the level's image is to be in `image`.
+    /// The images that are smoothed and reduced for each level, and their destinations, with the level's image in
+    /// `image`.
     pub(super) fn pictures(&self, image: BufId) -> Vec<[BufId; 2]> {
         vec![[self.weighted, image], [self.certainty, self.level]]
     }
 
-    /// Where the certainty of a level's expansion lies.
+    /// The buffer of the certainty of a level's expansion.
     pub(super) fn expansion(&self, k: usize, slot: usize) -> BufId {
         self.expansions[k][slot]
     }
 
-    /// A gray picture times its certainty.
+    /// The step that multiplies a gray image by its certainty.
     pub(super) fn premultiply(&self, gray: BufId, certainty: BufId, size: Size) -> Step {
         let plane = Shape::planar(size, 1);
         Step::new(
@@ -56,7 +57,7 @@ impl Normalized {
         )
     }
 
-    /// The expansion of a level's image, which is weighted already.
+    /// The steps that expand a level's image, which is already weighted.
     pub(super) fn expand(
         &self,
         k: usize,

@@ -1,4 +1,4 @@
-//! Farnebäck's parameters by their names.
+//! Farnebäck's parameters by name.
 
 use super::{Farneback, Outside, Update, Window};
 use crate::error::Result;

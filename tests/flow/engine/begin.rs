@@ -1,4 +1,4 @@
-//! What a pair begins with: nothing, a given flow, or the flow of the pair before.
+//! The initial flow of a pair: zero, a given flow, or the flow of the previous pair.
 
 use viewsphere::Error;
 use viewsphere::frame::{FlowField, Image, Plane, Size, UNKNOWN_FLOW};
@@ -16,7 +16,7 @@ fn constant(uv: [f32; 2]) -> FlowField {
     FlowField { size: SIZE, data: vec![uv; SIZE.pixels()] }
 }
 
-/// The second frame's flow, begun with a given one.
+/// The second frame's flow, with a given initial flow.
 fn begun(engine: &mut Engine, images: &[Image], initial: &FlowField) -> FlowField {
     engine.reset();
     assert!(engine.process(&images[0].frame().unwrap()).unwrap().is_none());
@@ -32,7 +32,7 @@ fn a_warm_start_differs_from_a_cold_one_from_the_second_pair_on() {
         let cold = flows(&mut engine(&backend, SIZE, &Config::default()), &images);
         let config = Config { warm_start: true, ..Config::default() };
         let warm = flows(&mut engine(&backend, SIZE, &config), &images);
-        // The first pair begins with no motion both times, though by other steps.
+        // The first pair begins with zero motion both times, though by different steps.
         assert_same(&warm[0], &cold[0], name);
         assert!(bits(&warm[1]) != bits(&cold[1]) && bits(&warm[2]) != bits(&cold[2]), "{name}");
     }
@@ -62,7 +62,7 @@ fn a_given_flow_is_begun_with_and_forgotten() {
         assert!(bits(&given) != bits(&zero), "{name}: the given flow was not begun with");
         let unknown = begun(&mut engine, &images, &constant([UNKNOWN_FLOW, f32::NAN]));
         assert_same(&unknown, &zero, name);
-        // Without a warm start the next pair begins with nothing again.
+        // Without a warm start the next pair begins with zero motion again.
         let next = engine.process(&images[2].frame().unwrap()).unwrap().unwrap();
         assert_same(next.flow.unwrap(), &cold[1], name);
     }

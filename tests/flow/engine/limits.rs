@@ -1,4 +1,4 @@
-//! Wrong frames, full engines, passed deadlines.
+//! Wrong frames, full engines, missed deadlines.
 
 use std::time::{Duration, Instant};
 
@@ -121,7 +121,7 @@ fn the_oldest_waiting_frame_gives_way() {
         let mut engine = engine(&backend, SIZE, &config);
         let tickets: Vec<_> = images.iter().map(|i| engine.submit(&i.frame().unwrap()).unwrap()).collect();
         let output = engine.wait(tickets[3]).unwrap().unwrap();
-        // Which ones were dropped is up to the GPU's speed; that the flow is that of its pair is not.
+        // Which frames were dropped depends on the GPU's speed; each flow must be that of its pair.
         let previous = output.previous as usize;
         let flow = output.flow.unwrap().clone();
         assert!(previous < 3, "{name}");
@@ -146,7 +146,7 @@ fn a_late_frame_may_be_asked_for_again() {
             ..Config::default()
         };
         let mut engine = engine(&backend, size, &config);
-        // A GPU may be done before the host has asked, but not every time.
+        // A GPU may be done before the host asks, but not every time.
         let late = (0..50).find_map(|_| {
             engine.reset();
             let first = engine.submit(&images[0].frame().unwrap()).unwrap();
@@ -188,7 +188,7 @@ fn a_frame_that_is_late_in_process_is_given_up() {
         for image in images.iter().cycle().take(6) {
             match engine.process(&image.frame().unwrap()) {
                 Err(Error::Timeout { .. }) => {}
-                // The GPU may be done at once, or still be busy with those that were given up.
+                // The GPU may be done at once, or still be busy with frames that were given up.
                 Ok(_) | Err(Error::Busy { .. }) if name == "GPU" => {}
                 other => panic!("{name}: {other:?}"),
             }

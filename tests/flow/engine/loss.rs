@@ -1,4 +1,4 @@
-//! A GPU that goes away. `destroy` is as near to that as a test can come.
+//! The loss of a GPU, simulated by `destroy`.
 
 use viewsphere::frame::{Image, Size};
 use viewsphere::gpu::Gpu;
@@ -15,7 +15,7 @@ fn images() -> Vec<Image> {
     (0..3).map(|n| gray(n, SIZE)).collect()
 }
 
-/// A device of its own, as the shared one must live.
+/// A separate device, because the shared one must live.
 fn own() -> Option<Gpu> {
     Some(need::gpu()?.reopen().unwrap())
 }
@@ -28,7 +28,7 @@ fn lost<T>(result: Result<T>) -> bool {
     matches!(result, Err(Error::DeviceLost { .. }))
 }
 
-/// Submits frames until one fails, which must be soon.
+/// Submits frames until one fails, which must happen soon.
 fn until_lost(engine: &mut Engine, images: &[Image]) {
     let results: Vec<bool> = images.iter().map(|i| lost(engine.process(&i.frame().unwrap()))).collect();
     assert!(results[0], "the loss was not noticed by the next frame");
@@ -68,7 +68,7 @@ fn frames_in_flight_tell_of_the_loss() {
     let first = engine.wait(tickets[0]);
     assert!(matches!(first, Ok(None | Some(_)) | Err(Error::DeviceLost { .. })), "{first:?}");
     assert!(lost(engine.wait(tickets[1])));
-    // Told once; then the ticket is used up.
+    // Reported once; then the ticket is no longer valid.
     assert!(matches!(engine.wait(tickets[1]), Err(Error::Ticket { .. })));
     assert_eq!(engine.stats().losses, 1);
     flows(&mut engine, &images);

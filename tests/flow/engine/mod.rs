@@ -1,4 +1,4 @@
-//! The engine: streams, their limits, and what happens when things go wrong.
+//! The engine: streams, their limits, and their failures.
 
 mod begin;
 mod limits;

@@ -1,4 +1,4 @@
-//! Moving pictures to test with, and both backends.
+//! Synthetic moving images, and both backends.
 
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
 use viewsphere::{Backend, Config, Engine};
@@ -61,7 +61,7 @@ pub(crate) fn bits(flow: &FlowField) -> Vec<[u32; 2]> {
     flow.data.iter().map(|uv| uv.map(f32::to_bits)).collect()
 }
 
-/// Fails unless two flows are the same bytes, and are not nothing.
+/// Fails unless two flows have the same bytes and are not zero everywhere.
 pub(crate) fn assert_same(a: &FlowField, b: &FlowField, what: &str) {
     assert_eq!(a.size, b.size, "{what}");
     assert!(a.data.iter().flatten().all(|v| v.is_finite()), "{what}: not finite");

@@ -1,4 +1,4 @@
-//! What an engine tells of itself.
+//! The engine's statistics.
 
 use std::time::Duration;
 

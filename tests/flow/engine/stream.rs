@@ -1,4 +1,4 @@
-//! A stream's results are those of its pairs.
+//! A stream's results equal those of its pairs.
 
 use viewsphere::frame::{FlowField, Frame, Image, PixelFormat, Size};
 use viewsphere::{Backend, Config, StreamConfig};
