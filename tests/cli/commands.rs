@@ -247,7 +247,7 @@ fn the_executors_are_compared_and_a_breach_ends_with_1() {
     assert!(text.contains("confidence (frame 1, confidence): confidence"), "{text}");
     // The same bits on both sides are not promised: the last digit of a division or a square root is the driver's.
     let ended = run(&folder, &["crosscheck", "0.png", "1.png", "--bounds", "0"]);
-    let differs = !ended.text().contains("first step that differs at all: none");
+    let differs = !ended.text().contains("first step with any difference: none");
     assert_eq!(ended.code, Some(i32::from(differs)));
     assert_eq!(ended.text().contains("FAILED"), differs, "{}", ended.text());
 }

@@ -381,6 +381,6 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--seed", "1.5"], &["--seed", "a whole number from 0 on"]);
     fly(&["--latency-frames", "-1"], &["--latency-frames", "\"-1\"", "a whole number from 0 to 30"]);
     fly(&["--measure", "--picture-at", "-1"], &["--picture-at is -1"]);
-    fly(&["--size", "-1x2"], &["'-1'", "no negative number is expected there; see viewsphere fly"]);
+    fly(&["--size", "-1x2"], &["'-1'", "a negative number is not expected here; see viewsphere fly"]);
     fly(&["-o", "/proc/x/y", "--sensor", "depth"], &["/proc/x/y: "]);
 }

@@ -255,7 +255,7 @@ fn no_input_is_overwritten() {
     let before = fs::read(folder.path().join("a.y4m")).unwrap();
     for overlay in ["a.y4m", "./a.y4m"] {
         let args = ["a.y4m", "--fov-deg", "90", "--quiet", "--overlay", overlay];
-        refused(&folder, &args, &["--overlay is", "a.y4m, expected another place"]);
+        refused(&folder, &args, &["--overlay is", "a.y4m, expected a path other than"]);
     }
     assert_eq!(fs::read(folder.path().join("a.y4m")).unwrap(), before);
 }

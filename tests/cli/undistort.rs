@@ -220,7 +220,7 @@ fn no_input_is_overwritten() {
     let image = Image { size: SIZE, format: PixelFormat::Gray8, data: vec![90; SIZE.pixels()] };
     picture::write_png(path("000000.png"), &image).unwrap();
     let before = [fs::read(path("cam.yaml")).unwrap(), fs::read(path("000000.png")).unwrap()];
-    let expected = "expected another place than that of the input";
+    let expected = "expected a path other than that of the input";
     refused(&folder, &["--camera", "cam.yaml", "000000.png", "-o", "./000000.png"], &["-o is", expected]);
     refused(&folder, &["--camera", "cam.yaml", "*.png", "-o", "."], &["-o is .,", expected]);
     let camera = ["--camera", "cam.yaml", "000000.png", "--write-camera", "cam.yaml"];
