@@ -11,8 +11,8 @@ use crate::gpu::{Gpu, GpuOptions};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Backend")]
 pub(super) struct BackendArgs {
-    /// Where to compute [default: a real GPU if there is one, else the CPU]. The choice is named on standard
-    /// error, unless
+    /// Where to compute [default: a real GPU if there is one, else the CPU]. The choice is named on standard error,
+    /// unless
     /// --quiet is given. `gpu` takes any adapter, including software ones such as lavapipe
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendArg>,
@@ -41,15 +41,14 @@ impl BackendArgs {
         self.open_with(&options(), quiet)
     }
 
-    /// Like [`open`](Self::open), but prefers a software adapter to the CPU backend: for commands that exist
-    /// to run the
-    /// shaders, however slowly.
+    /// Like [`open`](Self::open), but prefers a software adapter to the CPU backend: for commands that exist to run
+    /// the shaders, however slowly.
     pub(super) fn open_for_shaders(&self) -> Result<Backend> {
         self.open_with(&GpuOptions { allow_software: true, ..options() }, false)
     }
 
-    /// Opens two backends of the same kind on separate devices, so that the loss of one device does not
-    /// affect the other.
+    /// Opens two backends of the same kind on separate devices, so that the loss of one device does not affect the
+    /// other.
     pub(super) fn open_pair(&self, quiet: bool) -> Result<[Backend; 2]> {
         let first = self.open_unless(quiet)?;
         let second = self.open_like(&first)?;

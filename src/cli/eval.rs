@@ -12,11 +12,9 @@ use crate::io::read_flow;
 
 /// Compare a flow field with the ground truth.
 ///
-/// The extension tells the format: .flo (Middlebury), .png (KITTI), .npy (float32, height × width × 2).
-/// Pixels unknown in
-/// the ground truth are left out; those unknown in the estimate lower the density. If no pixel is left to
-/// compare, that is
-/// an error.
+/// The extension tells the format: .flo (Middlebury), .png (KITTI), .npy (float32, height × width × 2). Pixels
+/// unknown in the ground truth are left out; those unknown in the estimate lower the density. If no pixel is left to
+/// compare, that is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -1,6 +1,5 @@
-//! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all
-//! algorithms, generated
-//! from the estimators' own lists.
+//! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all algorithms,
+//! generated from the estimators' own lists.
 
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};

@@ -15,9 +15,8 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
     Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
 }
 
-/// Checks that a folder is writable or can be created, and leaves nothing behind. The error names the given
-/// folder, even
-/// where one above it is the cause.
+/// Checks that a folder is writable or can be created, and leaves nothing behind. The error names the given folder,
+/// even where one above it is the cause.
 pub(super) fn folder(path: &Path) -> Result<()> {
     not_standard_output(path)?;
     check_creatable(path)
@@ -35,9 +34,8 @@ pub(super) fn not_standard_output(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Creates a folder if it is missing, and runs `act`. If that fails, the folders created are removed again,
-/// unless they
-/// hold something.
+/// Creates a folder if it is missing, and runs `act`. If that fails, the folders created are removed again, unless
+/// they hold something.
 pub(super) fn within<T>(folder: &Path, act: impl FnOnce() -> Result<T>) -> Result<T> {
     let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let made: Vec<&Path> = folder.ancestors().take_while(missing).collect();
@@ -50,9 +48,8 @@ pub(super) fn within<T>(folder: &Path, act: impl FnOnce() -> Result<T>) -> Resul
     })
 }
 
-/// Checks that no input is overwritten: that no result is one of these files, or lies in the folder of one.
-/// Inputs that
-/// do not exist, and `-`, are skipped.
+/// Checks that no input is overwritten: that no result is one of these files, or lies in the folder of one. Inputs
+/// that do not exist, and `-`, are skipped.
 pub(super) fn spared<'a>(
     flag: &'static str,
     result: Option<&Path>,
@@ -86,9 +83,8 @@ pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
     Ok([first, second])
 }
 
-/// Reads a mask or certainty of 0 to 1: an image, black to white, or a plane in a `.npy` file. Its size must
-/// be `size`,
-/// that of `other`.
+/// Reads a mask or certainty of 0 to 1: an image, black to white, or a plane in a `.npy` file. Its size must be
+/// `size`, that of `other`.
 pub(super) fn plane(path: &Path, size: Size, other: &Path) -> Result<Plane> {
     let plane = if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
         npy::read_plane(path)?

@@ -1,5 +1,5 @@
-//! The command line: one module per subcommand. The work is done by the library's modules, which embedders
-//! call directly.
+//! The command line: one module per subcommand. The work is done by the library's modules, which embedders call
+//! directly.
 //!
 //! Results go to standard output, everything else to standard error. An error is one line, and the exit code is 2; a
 //! check that was asked for and failed gives 1.
@@ -82,8 +82,8 @@ enum Outcome {
 /// Runs the program with the process's arguments. Must be called before any thread starts.
 pub fn main() -> ExitCode {
     environment::prepare();
-    // Without a handler a signal still stops the program, and the next run that writes the same file removes
-    // what is left.
+    // Without a handler a signal still stops the program, and the next run that writes the same file removes what is
+    // left.
     let _ = ctrlc::set_handler(|| discard_and_exit(INTERRUPTED));
     let parsed = command().try_get_matches().and_then(|given| Cli::from_arg_matches(&given));
     let cli = match parsed {
@@ -161,8 +161,8 @@ fn usage(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// The message for a negative number where no number can stand, which clap takes for a flag: no flag begins
-/// with a digit.
+/// The message for a negative number where no number can stand, which clap takes for a flag: no flag begins with a
+/// digit.
 fn negative(problem: &str) -> Option<String> {
     let line = problem.lines().next()?;
     let number = line.strip_prefix("unexpected argument '-")?;

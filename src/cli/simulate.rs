@@ -25,21 +25,16 @@ const LARGE: f64 = 1e9;
 
 /// Create a data set: a flight through a simulated world, with images, gyro samples and ground truth.
 ///
-/// The flight is steered by true depth, so an aircraft could fly it. Beside frames/ the folder holds
-/// times.csv, camera.yaml
-/// (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv, and a README.md that
-/// documents each
-/// file, its units and frames, and how it was made. Ground truth, one file per frame: flow/ (.flo, pixels to
-/// the next frame,
-/// unknown where that does not show the point), depth/ (.npy, metres along the ray), nearness/ (1/m), divergence/ and
-/// spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by azimuth and elevation, see
-/// --grid).
+/// The flight is steered by true depth, so an aircraft could fly it. Beside frames/ the folder holds times.csv,
+/// camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv, and a README.md
+/// that documents each file, its units and frames, and how it was made. Ground truth, one file per frame: flow/
+/// (.flo, pixels to the next frame, unknown where that does not show the point), depth/ (.npy, metres along the ray),
+/// nearness/ (1/m), divergence/ and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by
+/// azimuth and elevation, see --grid).
 ///
-/// The same command gives the same files on the same adapter. Files are written into FOLDER.partial, which is
-/// renamed at the
-/// end; with --force the old folder is FOLDER.replaced for that moment. Both are removed where an earlier,
-/// interrupted run
-/// has left them.
+/// The same command gives the same files on the same adapter. Files are written into FOLDER.partial, which is renamed
+/// at the end; with --force the old folder is FOLDER.replaced for that moment. Both are removed where an earlier,
+/// interrupted run has left them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -51,9 +46,8 @@ Examples:
   viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
     --gyro set/gyro.csv --camera-from-gyro frd")]
 pub(super) struct Simulate {
-    /// World, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars,
-    /// poisson-forest, dead-end,
-    /// wires
+    /// World, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
+    /// dead-end, wires
     #[arg(long, value_name = "WORLD", default_value = "city")]
     world: CourseKind,
     /// Seed of the world and of all other random values
@@ -77,9 +71,8 @@ pub(super) struct Simulate {
     /// Ground truth to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
     #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
     truth: Vec<Truth>,
-    /// Draw an image beside each file of divergence and nearness: 0 is white, what approaches is red; full
-    /// colour is what a
-    /// wall ahead shows one second before contact
+    /// Draw an image beside each file of divergence and nearness: 0 is white, what approaches is red; full colour is
+    /// what a wall ahead shows one second before contact
     #[arg(long)]
     pictures: bool,
     /// Grid of rays over the field of view, azimuths × elevations, with grid in --truth [default: 32x24]

@@ -10,8 +10,8 @@ use crate::sim::campaign::Results;
 
 /// Merge the results of several folders, and summarize them together.
 ///
-/// They must be of one version and configuration. A flight found in several folders must have ended alike in
-/// all of them.
+/// They must be of one version and configuration. A flight found in several folders must have ended alike in all of
+/// them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

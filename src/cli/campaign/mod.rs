@@ -30,27 +30,20 @@ use crate::text::counted;
 /// The results file.
 const RESULTS: &str = "results.jsonl";
 
-/// Fly every combination of worlds, sensors, policies and so on with many seeds, and count how often the goal
-/// is reached.
+/// Fly every combination of worlds, sensors, policies and so on with many seeds, and count how often the goal is
+/// reached.
 ///
-/// Files in the folder: results.jsonl, one object per flight, appended as soon as the flight has ended; and
-/// at the end
-/// table.csv, table.json and report.html (one self-contained page), with a row per combination: flights; how
-/// many reached
-/// the goal, crashed, left the altitude band or timed out; the success rate with its 95 % confidence interval (Wilson
-/// 1927); the least clearance of a flight, mean and 5th percentile; the path efficiency of the flights that
-/// reached the
-/// goal; the distance flown per crash; the roll rate (root mean square); the share of time without a cue; the
-/// offset from
-/// the centre line where the world has one.
+/// Files in the folder: results.jsonl, one object per flight, appended as soon as the flight has ended; and at the
+/// end table.csv, table.json and report.html (one self-contained page), with a row per combination: flights; how many
+/// reached the goal, crashed, left the altitude band or timed out; the success rate with its 95 % confidence interval
+/// (Wilson 1927); the least clearance of a flight, mean and 5th percentile; the path efficiency of the flights that
+/// reached the goal; the distance flown per crash; the roll rate (root mean square); the share of time without a cue;
+/// the offset from the centre line where the world has one.
 ///
-/// A campaign can be stopped at any time. Called again, it resumes, retries the flights that failed with an
-/// error, and
-/// flies what was added to the lists. Results of another version, configuration or adapter are refused; only
-/// merge combines
-/// those of several adapters, and the table then names them. The table covers all results in the folder. The
-/// same flights
-/// give the same files, however many are flown concurrently.
+/// A campaign can be stopped at any time. Called again, it resumes, retries the flights that failed with an error,
+/// and flies what was added to the lists. Results of another version, configuration or adapter are refused; only
+/// merge combines those of several adapters, and the table then names them. The table covers all results in the
+/// folder. The same flights give the same files, however many are flown concurrently.
 /// folder. The same flights give the same files, however many are flown at a time.
 #[derive(Args, Debug)]
 #[command(
@@ -103,8 +96,7 @@ pub(super) struct Campaign {
     )]
     latencies: Vec<u32>,
     /// Faults, as `viewsphere fly` takes them: none, one fault, or several joined by +. dropped alone means
-    /// dropped=0.2,
-    /// gyro-bias alone gyro-bias=5
+    /// dropped=0.2, gyro-bias alone gyro-bias=5
     #[arg(long, value_name = "FAULT[+FAULT]...,...", value_delimiter = ',', default_value = "none")]
     faults: Vec<Faults>,
     /// Seeds of the worlds: FIRST..LAST, without LAST, or a single one

@@ -38,13 +38,12 @@ pub(super) struct Crosscheck {
     /// Size of the synthetic pair
     #[arg(long, value_name = "WxH", conflicts_with = "pictures")]
     size: Option<Size>,
-    /// Also check the certainty weighting, with this image (black 0, white 1) or .npy plane as the certainty
-    /// of both frames
+    /// Also check the certainty weighting, with this image (black 0, white 1) or .npy plane as the certainty of both
+    /// frames
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Check all steps up to the sectors of the view: undistortion of a synthetic lens, a synthetic rotation,
-    /// the flow, cells
-    /// and sectors
+    /// Check all steps up to the sectors of the view: undistortion of a synthetic lens, a synthetic rotation, the
+    /// flow, cells and sectors
     #[arg(long)]
     sphere: bool,
     /// Part of the name of the GPU adapter to check [default: the best one, software adapters included]

@@ -24,10 +24,8 @@ use crate::io::read_flow;
 /// Compute the flow between two images, or along a sequence or video.
 ///
 /// Inputs are two images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on
-/// standard
-/// input. For two images -o, --color, --arrows and --confidence name files; for everything else folders, in
-/// which file
-/// 000000 holds the flow from the first frame to the second. If none is given, a summary is printed.
+/// standard input. For two images -o, --color, --arrows and --confidence name files; for everything else folders, in
+/// which file 000000 holds the flow from the first frame to the second. If none is given, a summary is printed.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -39,8 +37,8 @@ Examples:
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
   ffmpeg -i in.mp4 -f rawvideo -pix_fmt gray - | viewsphere flow - --raw 640x480 -o flows/")]
 pub(super) struct Flow {
-    /// Two images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for
-    /// standard input
+    /// Two images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard
+    /// input
     #[arg(required = true)]
     inputs: Vec<String>,
     /// Write the flow to this file (.flo, .png for KITTI, .npy) or into this folder; - is standard output

@@ -58,9 +58,8 @@ impl Report {
         self.color_scale_px = scale;
     }
 
-    /// Prints to standard output: with `json` everything as JSON, with `summary` everything as text, else
-    /// only the scale
-    /// of the colours.
+    /// Prints to standard output: with `json` everything as JSON, with `summary` everything as text, else only the
+    /// scale of the colours.
     pub(super) fn print(&self, json: bool, summary: bool) -> Result<()> {
         if json {
             return print::json(self);

@@ -27,8 +27,8 @@ pub(super) struct GyroArgs {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, requires = "gyro")]
     gyro_offset_s: Option<f64>,
     /// Mount of the gyro: optical (the camera's axes: right, down, forward), frd (forward, right, down), flu
-    /// (forward, left,
-    /// up), or 9 numbers: the rotation from the gyro's frame to the camera's, row by row [default: optical]
+    /// (forward, left, up), or 9 numbers: the rotation from the gyro's frame to the camera's, row by row [default:
+    /// optical]
     #[arg(long, value_name = "MOUNT", allow_hyphen_values = true, requires = "gyro")]
     camera_from_gyro: Option<Mount>,
     /// Where the camera's rotation is removed from the flow [default: before]

@@ -28,8 +28,8 @@ impl Horizon {
         Ok(Self { up_camera: level_deg.map(up).transpose()? })
     }
 
-    /// The up direction in the camera's frame at the next frame. Unknown from the first frame on whose
-    /// rotation is unknown.
+    /// The up direction in the camera's frame at the next frame. Unknown from the first frame on whose rotation is
+    /// unknown.
     pub(super) fn at(&mut self, cue: &Cue<'_>) -> Option<DVec3> {
         if cue.interval_s.is_some() {
             let turned = self.up_camera.zip(cue.prev_from_cur);

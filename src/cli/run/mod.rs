@@ -30,25 +30,21 @@ use crate::wire::{CueMessage, Timing};
 
 /// Report what will be hit, where and when: the time to contact per sector of the view, frame by frame.
 ///
-/// Inputs are images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on
-/// standard input.
-/// The camera comes from a file of OpenCV, ROS (camera_info), Kalibr or EuRoC, or with --fov-deg is a pinhole without
-/// distortion. Azimuth is positive to the right and elevation up, from the camera's axis.
+/// Inputs are images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard
+/// input. The camera comes from a file of OpenCV, ROS (camera_info), Kalibr or EuRoC, or with --fov-deg is a pinhole
+/// without distortion. Azimuth is positive to the right and elevation up, from the camera's axis.
 ///
 /// One line per frame goes to standard output, the summary to standard error. A frame without a valid cue reports the
-/// reason, and the run goes on: the first frame; one too long after the previous one; one whose gyro samples
-/// are missing,
-/// not finite or out of order; one that shows too little. Without --gyro the camera's rotation stays in the flow.
+/// reason, and the run goes on: the first frame; one too long after the previous one; one whose gyro samples are
+/// missing, not finite or out of order; one that shows too little. Without --gyro the camera's rotation stays in the
+/// flow.
 ///
 /// With --json-lines each line is an object: frame, time_s, valid, invalid_kind and invalid (null, or first,
-/// interval,
-/// gyro, coverage, lost, frozen, turn, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or
-/// null, threat
-/// (azimuth_deg, elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg from
-/// left to right,
-/// elevation_deg from top to bottom, and as row-major lists ttc_s, null where nothing is known or nothing
-/// approaches, and
-/// coverage 0 to 1), timing (age_ms since the frame arrived, latency_ms since it was submitted, dropped in total).
+/// interval, gyro, coverage, lost, frozen, turn, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or
+/// null, threat (azimuth_deg, elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg
+/// from left to right, elevation_deg from top to bottom, and as row-major lists ttc_s, null where nothing is known or
+/// nothing approaches, and coverage 0 to 1), timing (age_ms since the frame arrived, latency_ms since it was
+/// submitted, dropped in total).
 #[derive(Args, Debug)]
 #[command(group(ArgGroup::new("view").args(["camera", "fov_deg"]).required(true)))]
 #[command(after_help = "\
@@ -83,27 +79,23 @@ pub(super) struct Run {
     /// Sectors of the view, columns × rows
     #[arg(long, value_name = "WxH", default_value = "24x9")]
     sectors: Size,
-    /// A sector with a shorter time to contact is a threat, above 0 and at most 60 s; an alarm if the
-    /// previous frame had one
-    /// too [default: 2]
+    /// A sector with a shorter time to contact is a threat, above 0 and at most 60 s; an alarm if the previous frame
+    /// had one too [default: 2]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     within_s: Option<f64>,
-    /// What passes at less than this much flying time to the side counts as hit, 0 to 60 s: 0.4 is 2 m at 5
-    /// m/s. In low
-    /// flight the ground is then a threat too [default: 0.4]
+    /// What passes at less than this much flying time to the side counts as hit, 0 to 60 s: 0.4 is 2 m at 5 m/s. In
+    /// low flight the ground is then a threat too [default: 0.4]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     aside_s: Option<f64>,
-    /// Certainty of each pixel in every frame: an image (black 0, white 1) or a .npy plane of 0 to 1. About
-    /// doubles the
-    /// computing time, as masked pixels are left out of the flow estimate too
+    /// Certainty of each pixel in every frame: an image (black 0, white 1) or a .npy plane of 0 to 1. About doubles
+    /// the computing time, as masked pixels are left out of the flow estimate too
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Print one JSON object per frame
     #[arg(long, conflicts_with_all = ["quiet", "json"])]
     json_lines: bool,
     /// Add to each sector ttc_early_s and ttc_late_s (the range that holds most of it), nearness_rate_hz,
-    /// divergence_hz and
-    /// confidence
+    /// divergence_hz and confidence
     #[arg(long, requires = "json_lines")]
     sector_detail: bool,
     /// Print only the summary
@@ -112,22 +104,18 @@ pub(super) struct Run {
     /// Print only the summary, as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Write a video of the frames and their results to this .y4m or to standard output (-): the flow in
-    /// colours, each
-    /// sector's time to contact (red below 1 s, orange 2 s, yellow 4 s, green 8 s), the threat and its time,
-    /// the direction of
-    /// motion, with --level the horizon; a red border where the cue is invalid. Frames dropped by --realtime
-    /// are left out
+    /// Write a video of the frames and their results to this .y4m or to standard output (-): the flow in colours,
+    /// each sector's time to contact (red below 1 s, orange 2 s, yellow 4 s, green 8 s), the threat and its time, the
+    /// direction of motion, with --level the horizon; a red border where the cue is invalid. Frames dropped by
+    /// --realtime are left out
     #[arg(long, value_name = "FILE")]
     overlay: Option<PathBuf>,
-    /// The camera's roll (right side down) and pitch (up) at the first frame, in degrees, for the overlay's
-    /// horizon. The gyro
-    /// keeps it up to date until the first frame whose rotation is unknown
+    /// The camera's roll (right side down) and pitch (up) at the first frame, in degrees, for the overlay's horizon.
+    /// The gyro keeps it up to date until the first frame whose rotation is unknown
     #[arg(long, value_name = "ROLL,PITCH", allow_hyphen_values = true, requires_all = ["overlay", "gyro"])]
     level: Option<Numbers<2>>,
-    /// Deliver frames as a live camera would: those of files at their times, those of a stream as they
-    /// arrive. Of the frames
-    /// that arrive during a computation the newest is kept; the others are dropped and counted
+    /// Deliver frames as a live camera would: those of files at their times, those of a stream as they arrive. Of the
+    /// frames that arrive during a computation the newest is kept; the others are dropped and counted
     #[arg(long)]
     realtime: bool,
     /// Size of raw gray frames, one byte per pixel, on standard input

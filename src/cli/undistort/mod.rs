@@ -23,15 +23,11 @@ const ARROWS: u32 = 40;
 
 /// Remove the lens distortion from images, so that straight lines are straight.
 ///
-/// The camera file is one of OpenCV, ROS (camera_info), Kalibr (its cam0) or EuRoC. Inputs are an image (PNG,
-/// JPEG, PGM,
-/// PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input. For one image -o names
-/// a .png or
-/// is - for standard output; for everything else a folder. Colour and 16-bit images keep their format; videos
-/// become gray.
-/// Pixels that the original does not show are black. Without --keep-all and --crop the focal length and the
-/// principal point
-/// stay the same.
+/// The camera file is one of OpenCV, ROS (camera_info), Kalibr (its cam0) or EuRoC. Inputs are an image (PNG, JPEG,
+/// PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input. For one image -o names a
+/// .png or is - for standard output; for everything else a folder. Colour and 16-bit images keep their format; videos
+/// become gray. Pixels that the original does not show are black. Without --keep-all and --crop the focal length and
+/// the principal point stay the same.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
