@@ -1,10 +1,10 @@
 use std::fmt::{self, Debug, Write};
 
-/// A short name for a configuration in all its parts, and for this crate's version: 16 hexadecimal digits that are the same
-/// only where both are, FNV-1a over what [`Debug`] writes.
+/// The fingerprint of a configuration and this crate's version: 16 hexadecimal digits, FNV-1a over the [`Debug`]
+/// output. Equal configurations of the same version have the same fingerprint.
 pub fn fingerprint(configuration: &impl Debug) -> String {
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
-    // A hash takes everything.
+    // Writing to a hash cannot fail.
     let _ = write!(hash, "{} {configuration:?}", env!("CARGO_PKG_VERSION"));
     format!("{:016x}", hash.0)
 }

@@ -1,4 +1,4 @@
-//! What a data set says of itself.
+//! The README.md of a data set.
 
 use glam::DVec3;
 
@@ -63,7 +63,7 @@ pub(super) fn write(
                                   height × width |\n"
                 .to_owned(),
             Truth::Spherical => "| spherical/NNNNNN.npy | how each pixel's bearing moves, a vector tangent to the unit sphere \
-                                 in the camera's frame, rad/s, float32, height × width × 3; the camera's turn is in it |\n"
+                                 in the camera's frame, rad/s, float32, height × width × 3; the camera's rotation included |\n"
                 .to_owned(),
             Truth::Grid => format!(
                 "| grid/NNNNNN.npy | metres along rays at {} azimuths (columns, from {:.3}° on the left to {:.3}°) and {} \
@@ -101,7 +101,7 @@ pub(super) fn write(
     write_bytes(folder.path("README.md"), text.as_bytes())
 }
 
-/// A bias in degrees per second, once if it is the same about each axis. The conversion's rounding is not shown.
+/// A bias in degrees per second, once if it is equal about all axes. The conversion's rounding is not shown.
 fn biases(bias_rad_s: DVec3) -> String {
     let [x, y, z] = bias_rad_s.to_array().map(|axis| (axis.to_degrees() * 1e9).round() / 1e9);
     if [y, z] == [x, x] { x.to_string() } else { format!("{x}, {y}, {z}") }
