@@ -111,8 +111,8 @@ fn a_campaign_goes_on_where_it_was_stopped() {
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() - 10]).unwrap();
     let ended = well(campaign(folder, "cut", &["--seeds", "0..4"]));
-    assert!(ended.stderr.contains("half-written line"), "{}", ended.stderr);
-    assert!(ended.stderr.contains("4 flights, 2 of them done before"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("incomplete last line"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("4 flights, 2 already done"), "{}", ended.stderr);
     assert_eq!(files(folder, "cut"), whole);
     let again = well(campaign(folder, "cut", &["--seeds", "0..4"]));
     assert!(again.stderr.contains("4 flights, 4 of them done before"), "{}", again.stderr);
