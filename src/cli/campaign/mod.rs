@@ -73,7 +73,7 @@ pub(super) struct Campaign {
     /// Measures of danger: divergence, nearness, blend
     #[arg(long, value_name = "DANGER,...", value_delimiter = ',', default_values_t = [Danger::default()])]
     dangers: Vec<Danger>,
-    /// Airspeeds, m/s: the airframe holds its altitude in level flight at 7.7 to 25, in a turn at 0.1 to 1000
+    /// Airspeeds, m/s: the airframe can hold its altitude at 7.7 to 25; with --body turn 0.1 to 1000
     #[arg(
         long,
         value_name = "M_S,...",
