@@ -44,7 +44,6 @@ const RESULTS: &str = "results.jsonl";
 /// and flies what was added to the lists. Results of another version, configuration or adapter are refused; only
 /// merge combines those of several adapters, and the table then names them. The table covers all results in the
 /// folder. The same flights give the same files, however many are flown concurrently.
-/// folder. The same flights give the same files, however many are flown at a time.
 #[derive(Args, Debug)]
 #[command(
     args_conflicts_with_subcommands = true,

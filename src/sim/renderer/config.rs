@@ -8,8 +8,8 @@ pub struct RendererConfig {
     /// The number of poses averaged per exposure, 1 to 8: see [`Renderer::expose`](super::Renderer::expose). 1 means
     /// no motion blur.
     pub blur_poses: usize,
-    /// Range in metres beyond whose limit surfaces, measured at their nearest point, are not shown: above 0, infinite
-    /// by default.
+    /// The visible range, metres: surfaces whose nearest point is further away are not shown. Above 0, infinite by
+    /// default.
     pub range_m: f64,
 }
 
