@@ -1,4 +1,4 @@
-//! Files that are whole or not there: written beside their place, then renamed into it.
+//! Atomic file writes: a file is written under a temporary name in its folder, then renamed.
 
 mod temporary;
 
@@ -13,18 +13,18 @@ pub(crate) use temporary::folder;
 
 use crate::error::{Error, Result};
 
-/// Writes a file so that `path` holds either its old content or all of the new one, never a part.
+/// Writes a file atomically: `path` holds either its old content or all of the new one, never a part.
 ///
-/// `content` is given a buffered writer to a temporary file in the same folder; when it returns, the file is flushed,
-/// synchronised and renamed to `path`. If anything fails, the temporary file is removed and `path` is left alone. What a
-/// process that was killed has left of the same file is removed, too: a temporary file is locked while it is written, so
-/// that it is known whether anyone does.
+/// `content` receives a buffered writer to a temporary file in the same folder. When it returns, the file is flushed,
+/// synchronised and renamed to `path`. On any failure the temporary file is removed and `path` is left alone.
+/// Temporary files of the same name that a killed process left behind are removed, too: a temporary file is locked
+/// while it is written, so an unlocked one belongs to nobody.
 ///
-/// A pipe or a device is written to as it stands. Returns what `content` does.
+/// A pipe or a device is written directly. Returns the value of `content`.
 ///
 /// # Errors
-/// What `content` fails with, or [`Error::Io`] naming the folder if the temporary file cannot be made there, or naming
-/// `path` if it cannot be finished.
+/// The error of `content`, or [`Error::Io`] naming the folder if the temporary file cannot be created there, or
+/// naming `path` if it cannot be completed.
 pub fn write_atomic<T>(
     path: impl AsRef<Path>,
     content: impl FnOnce(&mut dyn Write) -> Result<T>,
@@ -37,7 +37,7 @@ pub fn write_atomic<T>(
         let done = content(&mut out)?;
         return out.flush().map(|()| done).map_err(|source| Error::io(path, source));
     }
-    // What a link points to is replaced, not the link.
+    // Replace the target of a symbolic link, not the link.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let path = target.as_path();
     let temporary = Temporary::beside(path)?;
@@ -52,16 +52,16 @@ pub fn write_atomic<T>(
     Ok(done)
 }
 
-/// [`write_atomic`] of bytes that are already there.
+/// Writes bytes to a file atomically, as [`write_atomic`] does.
 ///
 /// # Errors
-/// As [`write_atomic`].
+/// As in [`write_atomic`].
 pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     let path = path.as_ref();
     write_atomic(path, |out| out.write_all(bytes).map_err(|source| Error::io(path, source)))
 }
 
-/// Checks that files can be written into a folder that is there, by writing one and removing it.
+/// Checks that an existing folder is writable, by creating a file in it and removing it.
 ///
 /// # Errors
 /// [`Error::Io`] naming the folder.
@@ -69,14 +69,14 @@ pub fn check_writable(folder: impl AsRef<Path>) -> Result<()> {
     Temporary::beside(&folder.as_ref().join("probe")).map(drop)
 }
 
-/// Checks that a folder can be written into, or can be made, and leaves nothing behind.
+/// Checks that a folder is writable or can be created, and leaves nothing behind.
 ///
 /// # Errors
-/// [`Error::Io`] naming `folder`, be it one above it that is at fault.
+/// [`Error::Io`] naming `folder`, even where one above it is the cause.
 pub fn check_creatable(folder: impl AsRef<Path>) -> Result<()> {
     let path = folder.as_ref();
     let there = path.ancestors().find(|folder| folder.exists());
-    // An ancestor of no name is the working folder.
+    // The ancestor of a relative name without a parent is the working folder.
     let there = there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     check_writable(there).map_err(|error| match error {
         Error::Io { source, .. } => Error::io(path, source),
@@ -84,10 +84,10 @@ pub fn check_creatable(folder: impl AsRef<Path>) -> Result<()> {
     })
 }
 
-/// Removes a file if it is there, and what a process that was killed has left of it.
+/// Removes a file, if it exists, and the temporary files of its name that a killed process left behind.
 ///
 /// # Errors
-/// [`Error::Io`] naming it.
+/// [`Error::Io`] naming the file.
 pub fn remove(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     if let Some(name) = path.file_name() {

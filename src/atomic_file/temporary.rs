@@ -1,4 +1,4 @@
-//! Files beside the place that they are written for.
+//! Temporary files, in the folder of the file that they will become.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
@@ -10,19 +10,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
 
-/// A file that is being written beside its place: locked, so that nobody takes it for one that was left, and removed in
-/// the end unless it was put there.
+/// A temporary file that is being written: locked, so that no other process takes it for a leftover, and removed when
+/// dropped unless it was renamed.
 #[derive(Debug)]
 pub(super) struct Temporary {
     path: PathBuf,
     file: File,
 }
 
-/// Those that are being written.
+/// The temporary files that are being written.
 static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 impl Temporary {
-    /// A new file in the folder of `path`, under a name that no other call of this or another process uses.
+    /// Creates a file in the folder of `path`, under a name that no other call of this or another process uses.
     pub(super) fn beside(path: &Path) -> Result<Self> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let no_name =
@@ -38,16 +38,16 @@ impl Temporary {
             let mut written = locked(&WRITTEN);
             match OpenOptions::new().write(true).create_new(true).open(&temporary) {
                 Ok(file) => match file.try_lock() {
-                    // Taken for one that was left before it was locked, and removed.
+                    // Another process took it for a leftover before it was locked, and removed it.
                     Err(TryLockError::WouldBlock) => {}
                     Ok(()) if !temporary.exists() => {}
-                    // Locked; or on a file system without locks, where nobody takes it for one that was left.
+                    // Locked; or on a file system without locks, where no process takes it for a leftover.
                     Ok(()) | Err(TryLockError::Error(_)) => {
                         written.insert(temporary.clone());
                         return Ok(Self { path: temporary, file });
                     }
                 },
-                // Of a process of the same number.
+                // A leftover of a process with the same id.
                 Err(source) if source.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(source) => return Err(Error::io(folder, source)),
             }
@@ -58,7 +58,7 @@ impl Temporary {
         &self.file
     }
 
-    /// Gives it its name. Until then it stays open, and so locked.
+    /// Renames the file to `path`. It stays open, and so locked, until then.
     pub(super) fn put(self, path: &Path) -> io::Result<()> {
         let mut written = locked(&WRITTEN);
         fs::rename(&self.path, path)?;
@@ -71,38 +71,38 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         if locked(&WRITTEN).remove(&self.path) {
-            // Whoever drops it knows of a more important error; one that cannot be removed does not change that.
+            // It is dropped because of a more important error; a failure to remove it changes nothing about that.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Removes all files that are being written, then ends the process: nothing is begun or finished in between.
+/// Removes all files that are being written, then exits. No other file is started or completed in between.
 #[cfg(feature = "cli")]
 pub(crate) fn discard_and_exit(code: i32) -> ! {
     let written = locked(&WRITTEN);
     for path in written.iter() {
-        // One that cannot be removed goes with the next file of its name.
+        // A file that cannot be removed now is removed by the next write to the same name.
         let _ = fs::remove_file(path);
     }
     std::process::exit(code)
 }
 
-/// The folder of a file.
+/// The folder of a file: its parent, or `.`.
 pub(crate) fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// What was begun by a thread that panicked is as good as any.
+/// Locks a mutex; a panic in another thread leaves its content valid.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The temporary files of each folder when this process first wrote into it, and of what: a folder of many thousand files is
-/// not to be looked through for each of them.
+/// Per folder, the temporary files found when this process first wrote into it, each with the name of its target:
+/// scanning a folder of many thousand files for each of them would be slow.
 static LEFT: Mutex<BTreeMap<PathBuf, Vec<(OsString, PathBuf)>>> = Mutex::new(BTreeMap::new());
 
-/// Removes what is left of files of this name that nobody writes any more.
+/// Removes the leftover temporary files of `name` that no process holds locked.
 pub(super) fn remove_left(folder: &Path, name: &OsStr) {
     let mut folders = locked(&LEFT);
     let left = folders.entry(folder.to_owned()).or_insert_with(|| {
@@ -112,13 +112,13 @@ pub(super) fn remove_left(folder: &Path, name: &OsStr) {
     for (_, temporary) in left.extract_if(.., |(of, _)| of == name) {
         let Ok(file) = OpenOptions::new().write(true).open(&temporary) else { continue };
         if file.try_lock().is_ok() {
-            // One that cannot be removed is in nobody's way.
+            // A file that cannot be removed does no harm.
             let _ = fs::remove_file(&temporary);
         }
     }
 }
 
-/// What a file is the temporary one of, by its name; none if it is no such file.
+/// The name of the target, if the entry is a temporary file.
 fn written(entry: &DirEntry) -> Option<OsString> {
     let name = entry.file_name();
     let (of, number) = name.to_str()?.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?;

@@ -1,19 +1,19 @@
-//! The gate that every camera from a file goes through: what cannot be right is named before a picture is spoiled by it.
+//! Validation of cameras from files: an error names what is wrong before images are processed with it.
 
 use super::Camera;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 
-/// Larger tangential coefficients do not come from lenses: at the corner of a wide picture (r = 1) they would move it by
-/// 15 % of its distance. They come from files that list k3 before p1 and p2.
+/// The largest tangential coefficient of a plausible lens: at the corner of a wide image (r = 1) it moves a point by
+/// 15 % of its distance. Larger values come from files that list k3 before p1 and p2.
 const MAX_TANGENTIAL: f64 = 0.05;
 
 impl Camera {
-    /// Checks that this can be a camera, and that its lens has an inverse in the whole picture.
+    /// Checks that the parameters are plausible, and that the lens map is invertible in the whole image.
     ///
     /// # Errors
-    /// [`Error::Parameter`] naming what is wrong: the size, a focal length or principal point that is no such thing, lens
-    /// coefficients in another order, a root of the denominator or a fold of the map inside the picture.
+    /// [`Error::Parameter`] naming what is wrong: the size, an implausible focal length or principal point, lens
+    /// coefficients in another order, a root of the denominator or a fold of the map inside the image.
     pub fn validate(&self) -> Result<()> {
         self.size.validate()?;
         for (name, value) in [("f_u", self.f_u), ("f_v", self.f_v)] {
@@ -23,12 +23,12 @@ impl Camera {
         }
         for (name, value, side) in [("u_0", self.u_0, self.size.width), ("v_0", self.v_0, self.size.height)] {
             let side = f64::from(side);
-            // A part cut from a larger picture may well lie beside the axis.
+            // The axis may well lie outside a part cropped from a larger image.
             if !(value.abs() <= 10.0 * side) {
                 return Err(Error::parameter(
                     name,
                     value,
-                    format_args!("a place near the picture, of {side} px"),
+                    format_args!("a position near the image, of {side} px"),
                 ));
             }
         }
@@ -58,11 +58,11 @@ impl Camera {
         let angle = |radius: f64| format!("{:.1}°", radius.atan().to_degrees());
         let root_inside = |root: f64, [u, v]: [f64; 2]| {
             let found = format!("0 at {} from the axis, before pixel {u}, {v}", angle(root));
-            let expected = "a lens whose k4 k5 k6 give no root inside the picture";
+            let expected = "a lens whose k4 k5 k6 give no root inside the image";
             Err(Error::parameter("the lens's denominator", found, expected))
         };
         for pixel in self.border() {
-            // Before the root the formula may rise without bound, and nowhere fold.
+            // Before the root the formula may rise without bound without folding.
             let pinhole = ((pixel[0] - self.u_0) / self.f_u).hypot((pixel[1] - self.v_0) / self.f_v);
             if let Some(root) = root.filter(|root| !(pinhole < *root)) {
                 return root_inside(root, pixel);
@@ -83,13 +83,13 @@ impl Camera {
             return Err(Error::parameter(
                 "the lens's map",
                 found,
-                "one that rises to the corners of the picture",
+                "one that rises to the corners of the image",
             ));
         }
         Ok(())
     }
 
-    /// The pixels of the border, the corners first: where they are seen, so is everything between them.
+    /// The border's pixels, corners first: where the map is invertible on the border, it is so inside.
     fn border(&self) -> impl Iterator<Item = [f64; 2]> {
         let Size { width, height } = self.size;
         let [right, bottom] = [width - 1, height - 1].map(f64::from);
@@ -154,7 +154,7 @@ mod tests {
         refused(&camera(&[-0.28, 0.02, 2e-4, 2e-5]), &["map is folding back at", "pixel 0, 0"]);
     }
 
-    /// What OpenCV's rational calibration of a wide GoPro gives: root and zero nearly cancel, 58° from the axis.
+    /// OpenCV's rational calibration of a wide GoPro: root and zero nearly cancel, 58° from the axis.
     #[test]
     fn a_root_of_the_denominator_inside_the_picture_is_named() {
         let calibrated =

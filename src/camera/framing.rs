@@ -1,20 +1,22 @@
-//! Cameras made from others: another resolution, a part of the picture, the ideal camera that an undistorted picture has.
+//! Cameras derived from others: of a resized image, of a part of an image, and the ideal camera of an undistorted
+//! image.
 
 use super::{Camera, Lens};
 use crate::error::{Error, Result};
 use crate::frame::Size;
 
-/// How much of the picture an ideal camera shows.
+/// How much of the original image an ideal camera shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framing {
-    /// Every pixel of the original; at the borders places that it does not show (OpenCV's `alpha` of 1).
+    /// Every pixel of the original, with borders that it does not show (OpenCV's `alpha` of 1).
     KeepAll,
-    /// Only places that the original shows (OpenCV's `alpha` of 0).
+    /// Only points that the original shows (OpenCV's `alpha` of 0).
     CropToValid,
 }
 
 impl Camera {
-    /// The camera of the same picture scaled to another size: its outer edges stay, not its outermost pixel centres.
+    /// The camera of the same image scaled to another size: its outer edges stay in place, not its outermost pixel
+    /// centres.
     pub fn resized(&self, size: Size) -> Self {
         let along = |f: f64, c: f64, from: u32, to: u32| {
             let scale = f64::from(to) / f64::from(from);
@@ -25,10 +27,10 @@ impl Camera {
         Self { size, f_u, f_v, u_0, v_0, lens: self.lens }
     }
 
-    /// The camera of a part of the picture that begins at column `x` and row `y`.
+    /// The camera of the part of the image that starts at column `x` and row `y`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the part has no pixels or is not inside the picture.
+    /// [`Error::Parameter`] if the part is empty or extends beyond the image.
     pub fn cropped(&self, x: u32, y: u32, size: Size) -> Result<Self> {
         size.validate()?;
         let fits = |at: u32, part: u32, whole: u32| at.checked_add(part).is_some_and(|end| end <= whole);
@@ -39,13 +41,14 @@ impl Camera {
         Ok(Self { size, u_0: self.u_0 - f64::from(x), v_0: self.v_0 - f64::from(y), ..*self })
     }
 
-    /// The camera without a lens whose picture of the given size shows what this one shows.
+    /// The ideal camera, without distortion, whose image of the given size shows the view of this one.
     ///
-    /// As OpenCV's `getOptimalNewCameraMatrix`, but with every pixel of the border in place of a few: the view fills the
-    /// picture, so that the focal lengths along rows and columns may differ.
+    /// As OpenCV's `getOptimalNewCameraMatrix`, but with every pixel of the border instead of a few. The view fills
+    /// the image, so the focal lengths along rows and columns may differ.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the size is out of range, or if the lens has no inverse at some pixel of the border.
+    /// [`Error::Parameter`] if the size is out of range, or if the lens map is not invertible at some pixel of the
+    /// border.
     pub fn ideal(&self, size: Size, view: Framing) -> Result<Self> {
         size.validate()?;
         let border = self.ideal_border()?;
@@ -72,26 +75,26 @@ impl Camera {
         Ok(Self { size, f_u, f_v, u_0, v_0, lens: Lens::NONE })
     }
 
-    /// Where an ideal pinhole would show what the border's pixels show.
+    /// The undistorted positions of the border's pixels, at focal length 1.
     fn ideal_border(&self) -> Result<Border> {
         let Size { width, height } = self.size;
         let place = |u: u32, v: u32| {
             let pixel = [f64::from(u), f64::from(v)];
             self.ideal_place(pixel).ok_or_else(|| {
-                let expected = "a lens with an inverse in the whole picture";
+                let expected = "a lens with an inverse in the whole image";
                 Error::parameter("pixel without a ray", format_args!("{u}, {v}"), expected)
             })
         };
         let column = |u: u32| (0..height).map(|v| place(u, v)).collect::<Result<Vec<_>>>();
         let row = |v: u32| (0..width).map(|u| place(u, v)).collect::<Result<Vec<_>>>();
-        // Between the centres of a single column there is nothing that could be shown.
+        // Between the centres of a single column there is nothing to show.
         if width < 2 || height < 2 {
             return Err(Error::parameter("size", self.size, "at least 2×2, for a view without the lens"));
         }
         Ok(Border { left: column(0)?, right: column(width - 1)?, top: row(0)?, bottom: row(height - 1)? })
     }
 
-    /// Where an ideal pinhole, at a distance of 1 from its picture, would show what a pixel shows.
+    /// The undistorted position of a pixel, at focal length 1: (X/Z, Y/Z).
     pub(super) fn ideal_place(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
         self.lens.undistort([(pixel[0] - self.u_0) / self.f_u, (pixel[1] - self.v_0) / self.f_v])
     }

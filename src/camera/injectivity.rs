@@ -1,27 +1,28 @@
-//! How far from its axis a lens is one to one.
+//! The radius up to which a lens map is one to one.
 //!
-//! The derivative of the lens map is symmetric: with p = (p2, p1) it is that of the radial part, whose eigenvalues are
-//! g = d(r q)/dr along the radius and q across it, plus 2 (p xᵀ + x pᵀ + (p·x) 1), whose eigenvalues are −6 |p| r at
-//! least. If it is positive definite on a disc, the map is the gradient of a strictly convex function there, and so one to
-//! one. The disc asked for is therefore the one where
+//! The derivative of the lens map is symmetric: with p = (p2, p1) it is that of the radial part, whose eigenvalues
+//! are g = d(r q)/dr along the radius and q across it, plus 2 (p xᵀ + x pᵀ + (p·x) 1), whose eigenvalues are −6 |p| r
+//! at least. If it is positive definite on a disc, the map is the gradient of a strictly convex function there, and
+//! so one to one. The disc is therefore the one where
 //!
 //! q − 6 |p| r > 0, g − 6 |p| r > 0, and the denominator of q is positive.
 //!
-//! The second is sharp, in the direction opposite to p. Just before a root of the denominator the formula may rise without
-//! bound and stay one to one: then all that is further out would be found in a thin ring. So g may not exceed
-//! [`MAX_STRETCH`] either. Times powers of the denominator all of these are polynomials in r, and Bernstein's form shows
-//! whether one is positive on an interval, without a step between samples to fall through.
+//! The second bound is sharp in the direction opposite to p. Just before a root of the denominator the formula may
+//! rise without bound and stay one to one: then everything further out would be shown in a thin ring. So g may not
+//! exceed [`MAX_STRETCH`] either. Multiplied by powers of the denominator, all of these are polynomials in r, and
+//! their Bernstein form shows whether one is positive on a whole interval, with no samples that could miss a root
+//! between them.
 
 use super::lens::Named;
 
-/// N D + 2 r² (N′ D − N D′) has the power 12 of r, and r D² the power 13.
+/// N D + 2 r² (N′ D − N D′) has degree 12 in r, and r D² degree 13.
 const TERMS: usize = 14;
-/// An interval is halved so many times at most. What is undecided then touches zero.
+/// The most times an interval is halved. What is undecided then touches zero.
 const MAX_DEPTH: u32 = 40;
-/// The largest angle from the axis that a planar picture is followed to.
+/// The largest angle from the axis that a planar image is analysed to.
 const MAX_ANGLE_DEG: f64 = 89.9;
 
-/// How many times further apart than an ideal pinhole a lens may show two places. Strong pincushions reach 2.
+/// How many times further apart than an ideal pinhole a lens may show two points. Strong pincushions reach 2.
 const MAX_STRETCH: f64 = 4.0;
 
 /// Coefficients of 1, r, r², …
@@ -32,7 +33,7 @@ pub(super) fn is_one_to_one(lens: &Named, radius: f64) -> bool {
     radius.is_finite() && conditions(lens).iter().all(|p| is_positive(p, radius))
 }
 
-/// The radius of the largest disc on which it is.
+/// The radius of the largest disc on which the lens is one to one.
 pub(super) fn limit(lens: &Named) -> f64 {
     let conditions = conditions(lens);
     largest(|radius| conditions.iter().all(|p| is_positive(p, radius)))
@@ -42,13 +43,13 @@ fn farthest() -> f64 {
     MAX_ANGLE_DEG.to_radians().tan()
 }
 
-/// The largest radius for which something holds that holds for all smaller ones, too.
+/// The largest radius for which a property holds that holds for all smaller ones, too.
 fn largest(holds: impl Fn(f64) -> bool) -> f64 {
     let (mut good, mut bad) = (0.0, farthest());
     if holds(bad) {
         return bad;
     }
-    // Until there is no number between the two.
+    // Bisect until no number lies between the two.
     loop {
         let middle = 0.5 * (good + bad);
         if !(good < middle && middle < bad) {
@@ -58,7 +59,7 @@ fn largest(holds: impl Fn(f64) -> bool) -> f64 {
     }
 }
 
-/// The first root of the denominator within the limit's largest angle, if there is one.
+/// The first root of the denominator within [`MAX_ANGLE_DEG`] of the axis, if there is one.
 pub(super) fn denominator_root(lens: &Named) -> Option<f64> {
     let [d, ..] = conditions(lens);
     let root = largest(|radius| is_positive(&d, radius));
@@ -78,7 +79,7 @@ fn conditions(lens: &Named) -> [Polynomial; 4] {
     [d, across, minus(&radial, &times(&tangential, &d_squared)), stretch]
 }
 
-/// Coefficients of every `step`-th power.
+/// A polynomial with the given coefficients at every `step`-th power.
 fn place(values: &[f64], step: usize) -> Polynomial {
     let mut result = [0.0; TERMS];
     result.iter_mut().step_by(step).zip(values).for_each(|(r, v)| *r = *v);
@@ -89,7 +90,7 @@ fn minus(a: &Polynomial, b: &Polynomial) -> Polynomial {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// The product. Powers that have no place are those whose coefficients cancel.
+/// The product. Terms beyond the last power cancel, and are dropped.
 fn times(a: &Polynomial, b: &Polynomial) -> Polynomial {
     std::array::from_fn(|i| (0..=i).map(|j| a[j] * b[i - j]).sum())
 }
@@ -111,8 +112,9 @@ fn is_positive(polynomial: &Polynomial, radius: f64) -> bool {
     bernstein_is_positive(&mut bernstein[..=degree], 0)
 }
 
-/// A polynomial in Bernstein's form lies between the smallest and the largest of its coefficients, and the first and the
-/// last of them are its values at the ends. What that leaves open is halved by de Casteljau's rule.
+/// Whether a polynomial in Bernstein form is positive. It lies between the smallest and the largest of its
+/// coefficients, and the first and the last are its values at the ends. An undecided interval is halved by de
+/// Casteljau's algorithm.
 fn bernstein_is_positive(coefficients: &mut [f64], depth: u32) -> bool {
     let last = coefficients.len() - 1;
     if coefficients.iter().all(|c| *c > 0.0) {

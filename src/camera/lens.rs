@@ -3,15 +3,16 @@
 use super::injectivity;
 use crate::error::{Error, Result};
 
-/// An inverse is accepted if it maps back to within this of where it came from, relative to 1 + the distance from the
-/// axis. At a focal length of 1000 pixels that is 10⁻⁹ px; rounding alone is a thousandth of it.
+/// The accepted residual of an inverse, mapped forward again, relative to 1 + the distance from the axis. At a focal
+/// length of 1000 pixels it is 10⁻⁹ px; rounding alone is a thousandth of it.
 const RESIDUAL: f64 = 1e-12;
-/// Newton's method squares the error with each step; those that need more than this are not converging.
+/// The most steps. Newton's method squares the error with each; one that needs more is not converging.
 const MAX_STEPS: usize = 40;
-/// A step that does not come closer is halved up to this many times.
+/// The most times a step that does not reduce the residual is halved.
 const MAX_HALVINGS: usize = 40;
 
-/// How a lens displaces what an ideal pinhole would show (Brown 1971, with the rational radial factor of OpenCV).
+/// Lens distortion: where a lens shows the points of an ideal pinhole (Brown 1971, with OpenCV's rational radial
+/// factor).
 ///
 /// With x = X/Z, y = Y/Z and r² = x² + y²:
 ///
@@ -20,15 +21,15 @@ const MAX_HALVINGS: usize = 40;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lens {
-    /// k1 k2 p1 p2 k3 k4 k5 k6; those that are not used are 0.
+    /// k1 k2 p1 p2 k3 k4 k5 k6; unused ones are 0.
     pub coefficients: [f64; 8],
 }
 
-/// By names in place of numbers.
+/// The coefficients by name instead of by index.
 pub(super) struct Named {
-    /// Of r², r⁴ and r⁶ in the numerator.
+    /// The factors of r², r⁴ and r⁶ in the numerator.
     pub(super) numerator: [f64; 3],
-    /// The same in the denominator.
+    /// The factors of r², r⁴ and r⁶ in the denominator.
     pub(super) denominator: [f64; 3],
     pub(super) p1: f64,
     pub(super) p2: f64,
@@ -38,10 +39,10 @@ impl Lens {
     /// No distortion.
     pub const NONE: Self = Self { coefficients: [0.0; 8] };
 
-    /// A lens of 0, 4, 5 or 8 coefficients in the order k1 k2 p1 p2 k3 k4 k5 k6.
+    /// A lens with 0, 4, 5 or 8 coefficients, in the order k1 k2 p1 p2 k3 k4 k5 k6.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for another number of them, or one that is not a finite number.
+    /// [`Error::Parameter`] for another number of coefficients, or for one that is not finite.
     pub fn new(coefficients: &[f64]) -> Result<Self> {
         if ![0, 4, 5, 8].contains(&coefficients.len()) {
             let expected = "0, 4, 5 or 8, in the order k1 k2 p1 p2 k3 k4 k5 k6";
@@ -55,41 +56,42 @@ impl Lens {
         Ok(Self { coefficients: all })
     }
 
-    /// The coefficients that a file needs, in the order k1 k2 p1 p2 k3 k4 k5 k6: 5, or 8 if one of the last three is not 0.
+    /// The coefficients to write to a file, in the order k1 k2 p1 p2 k3 k4 k5 k6: 5, or all 8 if one of the last
+    /// three is not 0.
     pub fn shortest(&self) -> &[f64] {
         let rational = self.coefficients[5..].iter().any(|c| *c != 0.0);
         &self.coefficients[..if rational { 8 } else { 5 }]
     }
 
-    /// Where the lens shows what an ideal pinhole would show at `ideal`; both are at a distance of 1 from the pinhole.
+    /// The distorted position of the point that an ideal pinhole shows at `ideal`; both at focal length 1.
     ///
-    /// The bare formula: beyond [`Lens::radius_limit`] it gives places without meaning.
+    /// The formula alone: beyond [`Lens::radius_limit`] its results have no meaning.
     pub fn distort(&self, ideal: [f64; 2]) -> [f64; 2] {
         self.with_jacobian(ideal).0
     }
 
-    /// What an ideal pinhole would show at the place returned, the lens shows at `distorted`: the inverse of
-    /// [`Lens::distort`], to a residual of 10⁻¹² (1 + |distorted|).
+    /// The undistorted position of the point that the lens shows at `distorted`; both at focal length 1. The inverse
+    /// of [`Lens::distort`], to a residual of 10⁻¹² (1 + |distorted|).
     ///
-    /// `None` if there is no such place within [`Lens::radius_limit`], where it is the only one.
+    /// `None` if there is no such position within [`Lens::radius_limit`], where it is unique.
     pub fn undistort(&self, distorted: [f64; 2]) -> Option<[f64; 2]> {
         if *self == Self::NONE {
             return distorted.iter().all(|c| c.is_finite()).then_some(distorted);
         }
-        // Nearly always the first search ends well. Where it has ended beyond a fold, the second one is kept inside.
+        // The first search nearly always succeeds. Where it has ended beyond a fold, the second one is kept inside.
         self.search(distorted, distorted, f64::INFINITY)
             .or_else(|| self.search(distorted, [0.0; 2], self.radius_limit()))
     }
 
-    /// Whether no two places within this distance of the axis are shown at the same place, none is mirrored, and none
-    /// has a factor q whose denominator is not positive, or so close to a root that the formula stretches the picture
-    /// more than four times. `false` for what is not a finite number.
+    /// Whether the lens map is sound up to this distance from the axis: it shows no two points at the same position
+    /// and mirrors none, and the denominator of q stays positive and so far from a root that the formula stretches
+    /// the image at most four times. `false` for a radius that is not finite.
     pub fn is_one_to_one_to(&self, radius: f64) -> bool {
         *self == Self::NONE && radius.is_finite() || injectivity::is_one_to_one(&self.named(), radius)
     }
 
-    /// The distance from the axis (the tangent of the angle to it) up to which the lens is one to one, or that of 89.9°
-    /// if it is so further on.
+    /// The distance from the axis (the tangent of the angle to it) up to which the lens is one to one, at most that
+    /// of 89.9°.
     pub fn radius_limit(&self) -> f64 {
         injectivity::limit(&self.named())
     }
@@ -104,7 +106,7 @@ impl Lens {
         Named { numerator: [k1, k2, k3], denominator: [k4, k5, k6], p1, p2 }
     }
 
-    /// The place that `ideal` is shown at, and xx, xy = yx, yy of the derivative there.
+    /// The distorted position of `ideal`, and the derivative there: its elements xx, xy = yx, yy.
     pub fn with_jacobian(&self, ideal: [f64; 2]) -> ([f64; 2], [f64; 3]) {
         let Named { numerator, denominator, p1, p2 } = self.named();
         let [x, y] = ideal;
@@ -113,7 +115,7 @@ impl Lens {
         let slope = |[a, b, c]: [f64; 3]| a + s * (2.0 * b + s * 3.0 * c);
         let (n, d) = (value(numerator), value(denominator));
         let q = n / d;
-        // The derivative of q for r², twice: it comes with ∂r²/∂x = 2x.
+        // The derivative of q by r², twice: it comes with ∂r²/∂x = 2x.
         let q_s = 2.0 * (slope(numerator) - q * slope(denominator)) / d;
         let distorted = [
             x * q + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x),
@@ -127,7 +129,7 @@ impl Lens {
         (distorted, jacobian)
     }
 
-    /// Newton's method from `start`, kept within `limit` of the axis.
+    /// Newton's method from `start`, clamped to within `limit` of the axis.
     fn search(&self, distorted: [f64; 2], start: [f64; 2], limit: f64) -> Option<[f64; 2]> {
         let enough = RESIDUAL * (1.0 + distorted[0].hypot(distorted[1]));
         if !enough.is_finite() {
@@ -137,7 +139,7 @@ impl Lens {
         let mut value = self.with_jacobian(at);
         let mut residual = distance(value.0, distorted);
         for _ in 0..MAX_STEPS {
-            // A thousandth of what is asked for is rounding.
+            // Rounding reaches a thousandth of the accepted residual.
             if residual <= 1e-3 * enough {
                 break;
             }
@@ -160,7 +162,7 @@ impl Lens {
                 }
                 share *= 0.5;
             }
-            // Where no step comes closer, rounding is all that is left, or there is nothing to be found.
+            // No step reduces the residual: only rounding is left, or there is no solution.
             let Some(found) = closer else { break };
             (at, value, residual) = found;
         }
@@ -214,7 +216,7 @@ mod tests {
         }
     }
 
-    /// x′ = x (1 − r²/3) turns back at r = 1, where it shows 2/3: nothing is shown beyond.
+    /// x′ = x (1 − r²/3) folds back at r = 1, where it shows 2/3: nothing is shown beyond.
     #[test]
     fn beyond_the_fold_there_is_nothing() {
         let lens = Lens::new(&[-1.0 / 3.0, 0.0, 0.0, 0.0]).unwrap();
@@ -229,7 +231,7 @@ mod tests {
         }
     }
 
-    /// A map that folds and rises again shows places beyond as well; the answer must be the one before the fold.
+    /// A map that folds and rises again also shows points beyond the fold; the answer must be the one before it.
     #[test]
     fn the_answer_lies_before_the_first_fold() {
         let lens = Lens::new(&[-1.0, 0.0, 0.0, 0.0, 0.4]).unwrap();
@@ -258,7 +260,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Whatever the lens, what it shows up to its limit is found again, and what is found is shown there.
+        /// For any lens, a point shown up to its limit is found again, and a point found is shown there.
         #[test]
         fn no_answer_is_wrong(
             radial in prop::array::uniform6(-1.0..1.0_f64),

@@ -1,8 +1,8 @@
-//! Cameras: how the pixels of a picture and the directions they look in belong together.
+//! Camera models: the mapping between pixels and viewing directions.
 //!
-//! The camera's frame is x to the right, y down, z forward. Pixel centres lie at whole numbers (OpenCV's convention). All
-//! of it is `f64`; what is done per pixel has its kernels. Calibration files are read by `io::camera`, which needs the feature
-//! `io`.
+//! The camera's frame is x to the right, y down, z forward. Pixel centres lie at integer coordinates (OpenCV's
+//! convention). Everything here is `f64`; per-pixel work is done by kernels. Calibration files are read by
+//! `io::camera`, which needs the feature `io`.
 
 mod check;
 mod framing;
@@ -23,7 +23,7 @@ use crate::frame::Size;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Camera {
-    /// Width and height of its pictures.
+    /// Width and height of its images.
     pub size: Size,
     /// Focal length in pixels, along a row.
     pub f_u: f64,
@@ -33,12 +33,13 @@ pub struct Camera {
     pub u_0: f64,
     /// Row of the principal point.
     pub v_0: f64,
-    /// What the lens does to the ideal picture.
+    /// The distortion of the lens.
     pub lens: Lens,
 }
 
 impl Camera {
-    /// The direction that a pixel looks in: a unit vector in the camera's frame. `None` where the lens has no inverse.
+    /// The direction of the ray through a pixel, given as `[column, row]`: a unit vector in the camera's frame.
+    /// `None` where the lens map is not invertible.
     pub fn ray(&self, pixel: [f64; 2]) -> Option<DVec3> {
         let distorted = [(pixel[0] - self.u_0) / self.f_u, (pixel[1] - self.v_0) / self.f_v];
         let [x, y] = self.lens.undistort(distorted)?;
@@ -46,8 +47,8 @@ impl Camera {
         ray.is_finite().then_some(ray)
     }
 
-    /// The pixel that shows a point, which may lie outside the picture. `None` for a point that is not in front of the
-    /// camera, and where the lens maps nothing, or would map two directions to one place.
+    /// The pixel `[column, row]` that shows a point, which may lie outside the image. `None` for a point that is not
+    /// in front of the camera, and where the lens has no image of it or would map two directions to one pixel.
     pub fn project(&self, point_camera: DVec3) -> Option<[f64; 2]> {
         let DVec3 { x, y, z } = point_camera;
         if !(z > 0.0 && z.is_finite()) {
@@ -62,8 +63,8 @@ impl Camera {
         pixel.iter().all(|c| c.is_finite()).then_some(pixel)
     }
 
-    /// Where this camera shows what another one, turned against it, shows at a pixel: the map of the kernel
-    /// [`crate::kernels::undistort_map`], in `f64`.
+    /// The pixel at which this camera shows what another camera at the same place, with another rotation, shows at
+    /// `pixel`: the map of the kernel [`crate::kernels::undistort_map`], in `f64`.
     pub fn place_of(&self, other: &Self, this_from_other: &DMat3, pixel: [f64; 2]) -> Option<[f64; 2]> {
         self.project(*this_from_other * other.ray(pixel)?)
     }
@@ -98,7 +99,7 @@ mod tests {
         assert_eq!(camera.ray([f64::INFINITY, 0.0]), None);
     }
 
-    /// A mild lens, a strong rational one, and pincushion: each pixel's ray comes back to the pixel.
+    /// With a mild lens, a strong rational one and pincushion, projecting each pixel's ray gives the pixel again.
     #[test]
     fn every_pixel_comes_back_from_its_ray() {
         let wide = [0.25, 0.01, -3e-4, 8e-5, 0.002, 0.6, 0.08, 0.006];

@@ -1,23 +1,23 @@
-//! Where a camera is and how it is turned.
+//! Camera poses, and conversions between attitude angles and rotations.
 
 use glam::{DMat3, DVec3};
 
-/// Where a camera is and how it is turned.
+/// The position and orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Its place, in metres in the world's frame.
+    /// The position, in metres in the world's frame.
     pub position_world: DVec3,
-    /// Its rotation, which turns what is given in the camera's frame into the world's.
+    /// The rotation from the camera's frame to the world's.
     pub world_from_camera: DMat3,
 }
 
-/// From the camera's frame (right, down, forward) to the body's of aerospace and MAVLink (forward, right, down).
+/// From the camera's frame (right, down, forward) to the body frame of aerospace and MAVLink (forward, right, down).
 pub const FRD_FROM_CAMERA: DMat3 = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
 
-/// From the camera's frame (right, down, forward) to the body's of ROS (forward, left, up).
+/// From the camera's frame (right, down, forward) to the body frame of ROS (forward, left, up).
 pub const FLU_FROM_CAMERA: DMat3 = DMat3::from_cols(DVec3::NEG_Y, DVec3::NEG_Z, DVec3::X);
 
-/// The rotation that turns what is given in the body's frame into the world's: R_z(yaw) R_y(pitch) R_x(roll).
+/// The rotation from the body's frame to the world's: R_z(yaw) R_y(pitch) R_x(roll).
 pub fn world_from_body(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> DMat3 {
     let (s_r, c_r) = roll_rad.sin_cos();
     let (s_p, c_p) = pitch_rad.sin_cos();
@@ -40,7 +40,7 @@ pub(crate) fn is_rotation(m: &DMat3) -> bool {
 
 /// Roll, pitch and yaw of a rotation: the inverse of [`world_from_body`], pitch from −π/2 to π/2, the others from −π to π.
 ///
-/// With the nose straight up or down, where only the sum or the difference of roll and yaw is known, roll is 0.
+/// With the nose straight up or down only the sum or the difference of roll and yaw is defined; roll is 0 then.
 pub fn roll_pitch_yaw_rad(world_from_body: &DMat3) -> [f64; 3] {
     let [x, y, z] = [world_from_body.x_axis, world_from_body.y_axis, world_from_body.z_axis];
     let level = x.x.hypot(x.y);
@@ -80,7 +80,7 @@ mod tests {
         }
     }
 
-    /// Yaw turns to the right as seen from above where z is down; the nose goes up with pitch, the right wing down with
+    /// With z down, yaw is to the right as seen from above; the nose goes up with pitch, the right wing down with
     /// roll.
     #[test]
     fn the_signs_are_those_of_aircraft() {

@@ -1,17 +1,17 @@
-//! How flags of several subcommands are read, and named in errors.
+//! Parsers of flag values shared by several subcommands, and errors that name the flag.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// Reads a whole number, and says so of what is none.
+/// Parses a whole number.
 pub(super) fn whole<T: FromStr>(text: &str) -> Result<T> {
     let wrong = |_| Error::parameter("number", format_args!("{text:?}"), "a whole number from 0 on");
     text.trim().parse().map_err(wrong)
 }
 
-/// Reads a whole number from `low` to `high`, and says so of what is none.
+/// Parses a whole number from `low` to `high`.
 pub(super) fn whole_within<T>(low: T, high: T) -> impl Fn(&str) -> Result<T> + Clone + Send + Sync
 where
     T: FromStr + PartialOrd + Display + Copy + Send + Sync,
@@ -23,7 +23,7 @@ where
     }
 }
 
-/// An error about a parameter, as one about the flag that it was given by.
+/// Renames an error's parameter to the flag that set it.
 pub(super) fn named_by_flags(error: Error, flags: &[(&'static str, &'static str)]) -> Error {
     match error {
         Error::Parameter { name, value, expected } => {

@@ -1,4 +1,4 @@
-//! What to compute on, and saying so.
+//! The choice of a backend, and the note that names it.
 
 use clap::{Args, ValueEnum};
 
@@ -7,12 +7,13 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::gpu::{Gpu, GpuOptions};
 
-/// What to compute on.
+/// The flags that choose a backend.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Backend")]
 pub(super) struct BackendArgs {
-    /// What to compute on. Without it: a real GPU if there is one, else the CPU; which one is said on stderr, but for
-    /// --quiet. `gpu` takes any adapter, also one that computes on the CPU such as lavapipe
+    /// Where to compute [default: a real GPU if there is one, else the CPU]. The choice is named on standard error,
+    /// unless
+    /// --quiet is given. `gpu` takes any adapter, including software ones such as lavapipe
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendArg>,
     /// Part of the name of the GPU adapter to use (see `viewsphere devices`)
@@ -20,40 +21,41 @@ pub(super) struct BackendArgs {
     pub(super) adapter: Option<String>,
 }
 
-/// The two executors.
+/// The two backends.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BackendArg {
-    /// wgpu
+    /// wgpu: Vulkan, Metal or Direct3D 12
     Gpu,
-    /// All cores
+    /// All CPU cores
     Cpu,
 }
 
 impl BackendArgs {
-    /// What to compute on. Says on stderr which it is.
+    /// Opens the backend and names it on standard error.
     pub(super) fn open(&self) -> Result<Backend> {
         self.open_unless(false)
     }
 
-    /// The same, and says nothing if `quiet`.
+    /// Like [`open`](Self::open), but silent if `quiet`.
     pub(super) fn open_unless(&self, quiet: bool) -> Result<Backend> {
         self.open_with(&options(), quiet)
     }
 
-    /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
-    /// counts for more than speed.
+    /// Like [`open`](Self::open), but prefers a software adapter to the CPU backend: for commands that exist to run
+    /// the shaders, however slowly.
     pub(super) fn open_for_shaders(&self) -> Result<Backend> {
         self.open_with(&GpuOptions { allow_software: true, ..options() }, false)
     }
 
-    /// Two of the same kind, on devices of their own: what happens to one does not happen to the other.
+    /// Opens two backends of the same kind on separate devices, so that the loss of one device does not affect the
+    /// other.
     pub(super) fn open_pair(&self, quiet: bool) -> Result<[Backend; 2]> {
         let first = self.open_unless(quiet)?;
         let second = self.open_like(&first)?;
         Ok([first, second])
     }
 
-    /// Another one of the kind that was opened, on a device of its own. Says nothing.
+    /// Opens another backend of the same kind as `opened`, on a device of its own. Silent.
     pub(super) fn open_like(&self, opened: &Backend) -> Result<Backend> {
         match (opened, self.backend, &self.adapter) {
             (Backend::Cpu, ..) => Ok(Backend::Cpu),
@@ -86,7 +88,7 @@ impl BackendArgs {
         Ok(backend)
     }
 
-    /// All that can be computed on: the CPU, and before it a GPU where there is one, unless one of them is named.
+    /// Opens every backend: a GPU, where there is one, and then the CPU; or only the one that the flags name.
     pub(super) fn open_all(&self) -> Result<Vec<Backend>> {
         if self.backend.is_some() {
             return Ok(vec![self.named()?]);
@@ -112,7 +114,7 @@ impl BackendArgs {
         }
     }
 
-    /// Checks that the two agree: for those who may have nothing to compute on what they name.
+    /// Checks that `--backend` and `--adapter` agree, without opening anything.
     pub(super) fn check(&self) -> Result<()> {
         match (self.backend, &self.adapter) {
             (Some(BackendArg::Cpu), Some(adapter)) => {
@@ -122,13 +124,13 @@ impl BackendArgs {
         }
     }
 
-    /// The adapter that is named, or any: for those who asked for a GPU.
+    /// Opens the named adapter, or the best one, software adapters included.
     pub(super) fn gpu(&self) -> Result<Gpu> {
         Gpu::new(&GpuOptions { adapter: self.adapter.clone(), allow_software: true, ..options() })
     }
 }
 
-/// The best real GPU, with the user's cache of compiled kernels.
+/// The options for the best real GPU, with the user's cache of compiled kernels.
 pub(super) fn options() -> GpuOptions {
     GpuOptions { pipeline_cache: cache::folder(), ..GpuOptions::default() }
 }

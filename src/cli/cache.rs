@@ -1,9 +1,9 @@
-//! The folder that keeps compiled kernels from one run to the next.
+//! The folder of the cache of compiled kernels.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// The folder that `VIEWSPHERE_CACHE` names, none if that is empty; without it `viewsphere` in the user's folder for caches.
+/// The folder: what `VIEWSPHERE_CACHE` names (no cache if it is empty), else `viewsphere` in the user's cache folder.
 pub(super) fn folder() -> Option<PathBuf> {
     choose(|name| std::env::var_os(name))
 }
@@ -12,7 +12,7 @@ fn choose(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     if let Some(chosen) = variable("VIEWSPHERE_CACHE") {
         return (!chosen.is_empty()).then(|| chosen.into());
     }
-    // A folder that is not absolute is none: XDG's specification says so.
+    // Relative paths are ignored, as XDG's specification requires.
     let folder = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let caches = if cfg!(windows) {
         folder("LOCALAPPDATA")

@@ -1,4 +1,4 @@
-//! `viewsphere devices`: what there is to compute on.
+//! `viewsphere devices`: the available GPU adapters and the CPU.
 
 use clap::Args;
 use serde::Serialize;
@@ -8,7 +8,7 @@ use super::{Outcome, print};
 use crate::error::Result;
 use crate::gpu::{AdapterName, Gpu, GpuOptions, adapters};
 
-/// List the GPU adapters and whether they can be used.
+/// List the GPU adapters and whether they are usable.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -23,7 +23,7 @@ pub(super) struct Devices {
 
 #[derive(Serialize)]
 struct List {
-    /// What is computed on if nothing is asked for.
+    /// The backend used when none is named.
     default: String,
     adapters: Vec<Device>,
     cpu_threads: usize,
@@ -67,7 +67,7 @@ impl Devices {
 impl Device {
     fn new(adapter: &wgpu::Adapter) -> Self {
         let (info, limits) = (adapter.get_info(), adapter.limits());
-        // Whether a device can be had shows only when it is asked for.
+        // Only a request shows whether the adapter provides a usable device.
         let adapter_name = AdapterName::new(&info);
         let class = adapter_name.class;
         let named = GpuOptions {
@@ -102,7 +102,7 @@ impl Device {
         let [x, y, z] = self.max_workgroup_size;
         format!(
             "{}\n  type         {}\n  class        {}\n  backend      {}\n  driver       {}\n  usable       {}\n  buffers      \
-             {} MiB at most, {} MiB bound, {} a stage\n  workgroups   {} invocations, {x}×{y}×{z}\n  timestamps   {}\n",
+             {} MiB at most, {} MiB bound, {} per stage\n  workgroups   {} invocations, {x}×{y}×{z}\n  timestamps   {}\n",
             self.name,
             if self.kind == "Cpu" {
                 "software: computes on the CPU, taken only when asked for"

@@ -1,4 +1,4 @@
-//! `viewsphere eval`: how far a flow field is from the truth.
+//! `viewsphere eval`: the error of a flow field against the ground truth.
 
 use std::path::PathBuf;
 
@@ -10,31 +10,31 @@ use crate::error::{Error, Result};
 use crate::eval::{FlowError, flow_error};
 use crate::io::read_flow;
 
-/// Compare a flow field with the truth.
+/// Compare a flow field with the ground truth.
 ///
-/// Formats are told by the extension: .flo (Middlebury), .png (KITTI), .npy (float32, height × width × 2). Pixels that
-/// are unknown in the truth are left out; those unknown in the estimate lower the density. Without any to compare it is an
-/// error.
+/// The extension tells the format: .flo (Middlebury), .png (KITTI), .npy (float32, height × width × 2). Pixels
+/// unknown in the ground truth are left out; those unknown in the estimate lower the density. If no pixel is left to
+/// compare, that is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   viewsphere eval --truth gt.flo estimate.flo
   viewsphere eval --truth kitti/000000_10.png estimate.flo --mask valid.png --json")]
 pub(super) struct Eval {
-    /// The true flow field
+    /// The ground truth
     #[arg(long, value_name = "FILE")]
     truth: PathBuf,
-    /// The flow field to judge
+    /// The flow field to evaluate
     estimate: PathBuf,
-    /// Count only pixels where this picture is brighter than mid-gray (or this .npy over 0.5)
+    /// Count only pixels where this image is brighter than mid-gray, or where this .npy plane is above 0.5
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Print the figures as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// [`FlowError`] as it is printed.
+/// [`FlowError`] as printed.
 #[derive(Serialize)]
 pub(super) struct FlowErrorFigures {
     aee_px: f64,

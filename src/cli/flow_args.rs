@@ -1,5 +1,5 @@
-//! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all algorithms, made from
-//! the estimators' own lists.
+//! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all algorithms,
+//! generated from the estimators' own lists.
 
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -10,23 +10,23 @@ use crate::flow::{Algorithm, Choice, Parameter};
 const HEADING: &str = "Flow parameters";
 const DEFAULT_PRESET: &str = "default";
 
-/// The algorithm and its parameters, as given.
+/// The algorithm and its parameters as given.
 #[derive(Clone, Debug)]
 pub(super) struct FlowArgs {
     algorithm: String,
     preset: String,
-    /// Names and values of the parameters that were given.
+    /// The names and values of the parameters given.
     parameters: Vec<(&'static str, String)>,
 }
 
-/// A parameter, and the algorithms that have it, each with its default.
+/// A parameter, with the algorithms that have it and its default in each.
 struct Shared {
     parameter: Parameter,
     of: Vec<(&'static str, String)>,
 }
 
 impl FlowArgs {
-    /// The parameters, checked.
+    /// The algorithm with its parameters, validated.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a preset or a parameter that the algorithm does not have, and for values out of range.
@@ -88,7 +88,7 @@ impl Args for FlowArgs {
                     .value_name("NAME")
                     .value_parser(values(Algorithm::ALL))
                     .default_value(Algorithm::ALL[0].0)
-                    .help("How the flow is estimated"),
+                    .help("Algorithm that estimates the flow"),
             )
             .arg(
                 Arg::new("preset")
@@ -97,7 +97,7 @@ impl Args for FlowArgs {
                     .value_parser(presets)
                     .default_value(DEFAULT_PRESET)
                     .help(
-                        "Parameters to begin with; the flags below replace single ones, and their defaults are those of the \
+                        "Set of parameters; the flags below override single ones, and their defaults are those of the \
                          preset default",
                     ),
             );
@@ -134,7 +134,7 @@ impl Shared {
     }
 }
 
-/// The text, if it is a value of the parameter of this name. Ranges are looked at when the algorithm is known.
+/// Accepts `text` if it parses as a value of the parameter. Ranges are checked once the algorithm is known.
 fn legible(name: &str, text: &str) -> Result<String> {
     match algorithms().find(|algorithm| algorithm.get(name).is_some()) {
         Some(mut algorithm) => algorithm.set(name, text).map(|()| text.to_owned()),

@@ -1,4 +1,4 @@
-//! What the subcommands read, and whether it belongs together.
+//! Checks of the subcommands' inputs and outputs.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Plane, Size};
 use crate::io::{check_creatable, npy, picture};
 
-/// Checks that what `path` holds is as large as what `other` holds.
+/// Checks that the size found in `path` equals that of `other`.
 pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) -> Result<()> {
     if found == expected {
         return Ok(());
@@ -15,37 +15,41 @@ pub(super) fn same_size(path: &Path, found: Size, expected: Size, other: &Path) 
     Err(Error::format(path, "size", found, format_args!("{expected} as in {}", other.display())))
 }
 
-/// Checks that a folder can be written into, or can be made, and leaves nothing behind. An error names the folder that was
-/// given, be it one above it that is at fault.
+/// Checks that a folder is writable or can be created, and leaves nothing behind. The error names the given folder,
+/// even where one above it is the cause.
 pub(super) fn folder(path: &Path) -> Result<()> {
     not_standard_output(path)?;
     check_creatable(path)
 }
 
-/// Checks that what is to be a folder is not `-`.
+/// Checks that an output folder is not `-`.
 pub(super) fn not_standard_output(path: &Path) -> Result<()> {
     if path == Path::new("-") {
-        return Err(Error::parameter("-o", "-", "a folder, not standard output; ./- is one of that name"));
+        return Err(Error::parameter(
+            "-o",
+            "-",
+            "a folder, not standard output; write ./- for a folder of that name",
+        ));
     }
     Ok(())
 }
 
-/// Makes a folder if it is not there, and does what is to be done in it. If that fails, the folders that were made and that
-/// hold nothing are taken away again.
+/// Creates a folder if it is missing, and runs `act`. If that fails, the folders created are removed again, unless
+/// they hold something.
 pub(super) fn within<T>(folder: &Path, act: impl FnOnce() -> Result<T>) -> Result<T> {
     let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let made: Vec<&Path> = folder.ancestors().take_while(missing).collect();
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
     act().inspect_err(|_| {
         for folder in made {
-            // One that holds something stays.
+            // Fails, as it should, for a folder that holds something.
             let _ = fs::remove_dir(folder);
         }
     })
 }
 
-/// Checks that no input is overwritten: that a result is neither one of these files, nor goes among them where it is a
-/// folder. What is not there yet, and `-`, is no input.
+/// Checks that no input is overwritten: that no result is one of these files, or lies in the folder of one. Inputs
+/// that do not exist, and `-`, are skipped.
 pub(super) fn spared<'a>(
     flag: &'static str,
     result: Option<&Path>,
@@ -60,14 +64,14 @@ pub(super) fn spared<'a>(
         if input.canonicalize().is_ok_and(|input| input == result)
             || beside.is_some_and(|beside| beside == result)
         {
-            let expected = format!("another place than that of the input {}", input.display());
+            let expected = format!("a path other than that of the input {}", input.display());
             return Err(Error::parameter(flag, given.display(), expected));
         }
     }
     Ok(())
 }
 
-/// Two pictures of one size and pixel format.
+/// Reads two images of the same size and pixel format.
 pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
     let first = picture::read(a)?;
     let second = picture::read(b)?;
@@ -79,7 +83,8 @@ pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
     Ok([first, second])
 }
 
-/// A mask or certainty, 0 to 1: a picture, black to white, or a plane in a `.npy` file. It must be as large as `other`.
+/// Reads a mask or certainty of 0 to 1: an image, black to white, or a plane in a `.npy` file. Its size must be
+/// `size`, that of `other`.
 pub(super) fn plane(path: &Path, size: Size, other: &Path) -> Result<Plane> {
     let plane = if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
         npy::read_plane(path)?
@@ -104,7 +109,7 @@ fn from_image(image: &Image) -> Plane {
             .iter()
             .map(|&b| f32::from(u16::from_ne_bytes(b)) / 65535.0)
             .collect(),
-        // The brightest channel, so that a mask painted in any colour counts.
+        // The brightest channel, so that a mask may be painted in any colour.
         PixelFormat::Rgb8 | PixelFormat::Rgba8 => (image.data.chunks_exact(image.format.bytes()))
             .map(|pixel| share(pixel.iter().take(3).copied().max().unwrap_or(0)))
             .collect(),

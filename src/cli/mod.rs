@@ -1,7 +1,8 @@
-//! The command line: one file a subcommand. What it does is there for embedders too, in the modules above.
+//! The command line: one module per subcommand. The work is done by the library's modules, which embedders call
+//! directly.
 //!
-//! Results go to standard output and everything else to standard error. An error is one line and ends the program with
-//! 2; a check that was asked for and failed ends it with 1.
+//! Results go to standard output, everything else to standard error. An error is one line, and the exit code is 2; a
+//! check that was asked for and failed gives 1.
 
 mod args;
 mod backend;
@@ -30,7 +31,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use crate::error::Result;
 use crate::io::discard_and_exit;
 
-/// The exit code of a program that was stopped by a signal, as shells give it.
+/// The exit code of a program stopped by SIGINT, as shells report it.
 const INTERRUPTED: i32 = 130;
 
 /// Dense optical flow on the GPU and the CPU, with a stated bound between them.
@@ -41,15 +42,15 @@ const INTERRUPTED: i32 = 130;
     about,
     after_help = "\
 Examples:
-  viewsphere demo                                    a made-up scene, its flow and its errors as pictures
+  viewsphere demo                                    a synthetic scene, its flow and its errors as pictures
   viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
-  viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be met, where and when
-  viewsphere simulate --world city --seed 3 -o set/    a made-up flight with exact truth
+  viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be hit, where and when
+  viewsphere simulate --world city --seed 3 -o set/    a simulated flight with exact ground truth
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
-  viewsphere fly --world forest --seed 7             through a made-up world on what the view says
-  viewsphere campaign --worlds wall,city --seeds 0..100    how often that goes well
-  viewsphere devices                                 what there is to compute on"
+  viewsphere fly --world forest --seed 7             through a simulated world, steered by what the view says
+  viewsphere campaign --worlds wall,city --seeds 0..100    how often the goal is reached
+  viewsphere devices                                 the GPU adapters and the CPU"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -71,17 +72,18 @@ enum Command {
     Demo(Box<demo::Demo>),
 }
 
-/// Whether what was asked for holds.
+/// Whether a check that was asked for holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Done,
     CheckFailed,
 }
 
-/// Runs the program on the process's arguments. To be called before any thread is started.
+/// Runs the program with the process's arguments. Must be called before any thread starts.
 pub fn main() -> ExitCode {
     environment::prepare();
-    // Without a handler the program is stopped all the same; what it leaves goes with the next file of the same name.
+    // Without a handler a signal still stops the program, and the next run that writes the same file removes what is
+    // left.
     let _ = ctrlc::set_handler(|| discard_and_exit(INTERRUPTED));
     let parsed = command().try_get_matches().and_then(|given| Cli::from_arg_matches(&given));
     let cli = match parsed {
@@ -116,10 +118,10 @@ impl Command {
     }
 }
 
-/// The exit codes of a command that does not say more about them.
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 a check failed, 2 anything else, and one line on standard error says what; 130 stopped by a signal.";
+/// The exit codes of commands that do not document their own.
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 a check failed, 2 an error, told in one line on standard error; 130 stopped by a signal.";
 
-/// The program's arguments, and in each command's help its exit codes.
+/// The program's arguments. Every command's help ends with its exit codes.
 fn command() -> clap::Command {
     let told = |command: clap::Command| {
         let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
@@ -132,11 +134,11 @@ fn command() -> clap::Command {
     told(Cli::command()).mut_subcommands(move |command| told(command).mut_subcommands(told))
 }
 
-/// Help that was asked for, or what is wrong with the arguments, on one line.
+/// Prints the help asked for, or what is wrong with the arguments, on one line.
 fn usage(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // Nothing to do where it cannot be shown.
+            // A help text that cannot be printed leaves nothing to report to.
             let _ = error.print();
             ExitCode::SUCCESS
         }
@@ -159,15 +161,16 @@ fn usage(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// What is said of a negative number where none can stand, which is taken for a flag: none begins with a digit.
+/// The message for a negative number where no number can stand, which clap takes for a flag: no flag begins with a
+/// digit.
 fn negative(problem: &str) -> Option<String> {
     let line = problem.lines().next()?;
     let number = line.strip_prefix("unexpected argument '-")?;
     let is_number = number.starts_with(|c: char| c.is_ascii_digit());
-    is_number.then(|| format!("{line}, no negative number is expected there"))
+    is_number.then(|| format!("{line}, a negative number is not expected here"))
 }
 
-/// The command whose help tells of the process's arguments, such as `viewsphere campaign merge`.
+/// The command whose help matches the process's arguments, such as `viewsphere campaign merge`.
 fn asked() -> String {
     let (mut command, mut name) = (command(), "viewsphere".to_owned());
     for argument in std::env::args_os().skip(1) {

@@ -1,4 +1,4 @@
-//! What goes out to the user: results to standard output, everything else to standard error.
+//! Output to the user: results to standard output, everything else to standard error.
 
 use std::io::{self, ErrorKind, Write};
 
@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 
-/// Bytes to standard output.
+/// Writes bytes to standard output.
 ///
-/// A reader that has gone away, such as `head`, has had enough, which is no failure.
+/// A reader that closes the pipe early, such as `head`, is not an error.
 pub(super) fn bytes(bytes: &[u8]) -> Result<()> {
     offer(bytes).map(|_| ())
 }
 
-/// The same, and whether there is still a reader: one who goes on for ever has to know.
+/// Writes bytes to standard output, and returns whether there still is a reader: for output without an end.
 pub(super) fn offer(bytes: &[u8]) -> Result<bool> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -23,27 +23,27 @@ pub(super) fn offer(bytes: &[u8]) -> Result<bool> {
     }
 }
 
-/// Text to standard output, with a line end.
+/// Writes text and a line end to standard output.
 pub(super) fn text(text: &str) -> Result<()> {
     bytes(format!("{}\n", text.trim_end()).as_bytes())
 }
 
-/// Figures to standard output, as JSON. What is not a number is `null` there.
+/// Writes figures as JSON to standard output. NaN becomes `null`.
 pub(super) fn json(figures: &impl Serialize) -> Result<()> {
     text(&pretty(figures)?)
 }
 
-/// Figures as JSON over several lines, without their end.
+/// Figures as indented JSON, without a line end.
 pub(super) fn pretty(figures: &impl Serialize) -> Result<String> {
     to_json(serde_json::to_string_pretty(figures))
 }
 
-/// The same on one line.
+/// Writes figures as one line of JSON to standard output.
 pub(super) fn json_line(figures: &impl Serialize) -> Result<()> {
     text(&one_line(figures)?)
 }
 
-/// Figures as JSON on one line, without its end.
+/// Figures as one line of JSON, without a line end.
 pub(super) fn one_line(figures: &impl Serialize) -> Result<String> {
     to_json(serde_json::to_string(figures))
 }
@@ -52,13 +52,13 @@ fn to_json(text: serde_json::Result<String>) -> Result<String> {
     text.map_err(|error| Error::io("standard output", io::Error::other(error)))
 }
 
-/// A line to standard error. That it cannot be written there is nothing to fail for.
+/// Writes a line to standard error. A failure to write it is ignored.
 pub(super) fn note(text: impl std::fmt::Display) {
     let line = text.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(io::stderr(), "viewsphere: {line}");
 }
 
-/// Rows of cells as columns of equal width: the first one to the left, the others to the right.
+/// Rows of cells as columns of even width: the first one left-aligned, the others right-aligned.
 pub(super) fn table(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

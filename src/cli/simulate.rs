@@ -1,4 +1,4 @@
-//! `viewsphere simulate`: a data set of a flight through a made-up world, with its truth.
+//! `viewsphere simulate`: the data set of a flight through a simulated world, with ground truth.
 
 use std::path::PathBuf;
 
@@ -20,20 +20,21 @@ use crate::sim::flight::camera;
 use crate::sim::vehicle::{GyroErrors, MAX_BIAS_RAD_S};
 use crate::text::counted;
 
-/// A set of so many bytes is announced.
+/// The size in bytes from which a set is announced before it is written.
 const LARGE: f64 = 1e9;
 
-/// Make a data set: a flight through a world, its pictures, its gyro and the truth.
+/// Create a data set: a flight through a simulated world, with images, gyro samples and ground truth.
 ///
-/// The flight is steered by true depth, so that it is one that an aircraft could fly. Beside frames/ the folder holds
-/// times.csv, camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv and a README.md
-/// that says what each file is, in which units and frames, and how it was made. Truth, a file a frame: flow/ (.flo, pixels to
-/// the next frame, unknown where that does not show it), depth/ (.npy, metres along the ray), nearness/ (1/m), divergence/
-/// and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by azimuth and elevation, see --grid).
+/// The flight is steered by true depth, so an aircraft could fly it. Beside frames/ the folder holds times.csv,
+/// camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv, and a README.md
+/// that documents each file, its units and frames, and how it was made. Ground truth, one file per frame: flow/
+/// (.flo, pixels to the next frame, unknown where that does not show the point), depth/ (.npy, metres along the ray),
+/// nearness/ (1/m), divergence/ and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by
+/// azimuth and elevation, see --grid).
 ///
-/// The same command gives the same files on the same adapter. They are written into FOLDER.partial, which is renamed at the
-/// end; with --force what was there is FOLDER.replaced for that moment. Either is removed where an earlier run that did not
-/// end has left it.
+/// The same command gives the same files on the same adapter. Files are written into FOLDER.partial, which is renamed
+/// at the end; with --force the old folder is FOLDER.replaced for that moment. Both are removed where an earlier,
+/// interrupted run has left them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -45,54 +46,54 @@ Examples:
   viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
     --gyro set/gyro.csv --camera-from-gyro frd")]
 pub(super) struct Simulate {
-    /// The world, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
+    /// World, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
     /// dead-end, wires
     #[arg(long, value_name = "WORLD", default_value = "city")]
     world: CourseKind,
-    /// What the world and all that is random begin with
+    /// Seed of the world and of all other random values
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// How long the flight is, two frames at least and at most 600; it ends earlier at the goal
+    /// Duration of the flight, two frames to 600 s; it ends earlier at the goal
     #[arg(long, value_name = "SECONDS", default_value_t = 20.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Airspeed, m/s: the airframe flies level at 7.7 to 25
+    /// Airspeed, m/s: the airframe can hold its altitude at 7.7 to 25
     #[arg(long, value_name = "M_S", default_value_t = 12.0, allow_negative_numbers = true)]
     speed: f64,
-    /// Size of the pictures
+    /// Image size
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     size: Size,
-    /// The camera that takes them [default: one of 96° without its lens, with barrel distortion]
+    /// Camera file [default: a camera of 96° before its barrel distortion]
     #[arg(long, value_name = "FILE", conflicts_with = "size")]
     camera: Option<PathBuf>,
-    /// Frames a second: a divisor of 240
+    /// Frame rate in Hz: a divisor of 240
     #[arg(long, value_name = "RATE", default_value_t = 30, allow_negative_numbers = true)]
     fps: u32,
-    /// Which truths to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
+    /// Ground truth to write; at 640x480 a frame of flow takes 2.4 MB, of spherical 3.7 MB, of the others 1.2 MB
     #[arg(long, value_enum, value_delimiter = ',', default_value = "flow,depth")]
     truth: Vec<Truth>,
-    /// Draw a picture beside each file of divergence and nearness: 0 is white, what comes nearer red, what a wall ahead shows
-    /// that is met in a second in full colour
+    /// Draw an image beside each file of divergence and nearness: 0 is white, what approaches is red; full colour is
+    /// what a wall ahead shows one second before contact
     #[arg(long)]
     pictures: bool,
-    /// Azimuths and elevations of the grid of rays over the field of view, with grid in --truth [default: 32x24]
+    /// Grid of rays over the field of view, azimuths × elevations, with grid in --truth [default: 32x24]
     #[arg(long, value_name = "AZxEL")]
     grid: Option<Size>,
-    /// Standard deviation of the noise of the pictures, in gray levels, 0 to 64
+    /// Standard deviation of the image noise, in gray levels, 0 to 64
     #[arg(long, value_name = "LEVELS", default_value_t = 2.0, allow_negative_numbers = true)]
     noise: f64,
     /// Density of the gyro's white noise, rad/s/√Hz, 0 to 1 [default: 3.4e-4]
     #[arg(long, value_name = "DENSITY", allow_negative_numbers = true)]
     gyro_noise: Option<f64>,
-    /// What the gyro says too much about each axis at the start, degrees a second, within ±2005
+    /// Bias of each gyro axis at the start, °/s, within ±2005
     #[arg(long, value_name = "DEG_S", default_value_t = 0.0, allow_negative_numbers = true)]
     gyro_bias: f64,
-    /// Folder to write into; there must be nothing in it
+    /// Folder to write into; it must be empty or missing
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
-    /// Replace what an earlier run has written there
+    /// Replace the result of an earlier run
     #[arg(long)]
     force: bool,
-    /// Say nothing while it is made
+    /// Print no progress and no notes
     #[arg(long)]
     quiet: bool,
     /// Print the summary as JSON
@@ -102,7 +103,7 @@ pub(super) struct Simulate {
     backend: BackendArgs,
 }
 
-/// What is said at the end.
+/// The summary of a data set.
 #[derive(Serialize)]
 struct SimulateSummary {
     folder: PathBuf,
@@ -110,14 +111,14 @@ struct SimulateSummary {
     seed: u64,
     frames: usize,
     fps: u32,
-    /// Seconds from the first frame to the last.
+    /// The time from the first frame to the last.
     duration_s: f64,
-    /// How the flight ended, if it did before the time was over.
+    /// How the flight ended, if it did so before its time was over.
     ended: Option<&'static str>,
     path_m: f64,
     least_clearance_m: f64,
     bytes: u64,
-    /// What is shown in full colour, if there are pictures of truths.
+    /// The values shown in full colour, if images of the ground truth are drawn.
     full_colour: Option<String>,
 }
 
@@ -143,7 +144,7 @@ impl Simulate {
         Ok(Outcome::Done)
     }
 
-    /// Checks what the library does not know, or names otherwise.
+    /// Checks what the library does not check, or reports under other names.
     fn check(&self) -> Result<()> {
         if !(self.seconds > 0.0 && self.seconds <= 600.0) {
             return Err(Error::parameter("--seconds", self.seconds, "above 0 and at most 600"));
@@ -168,7 +169,7 @@ impl Simulate {
     }
 
     fn config(&self) -> Result<DataSetConfig> {
-        // Between fewer than two frames nothing moves.
+        // With fewer than two frames there is no motion.
         let frames = (self.seconds * f64::from(self.fps)).round();
         if !(frames >= 2.0) {
             let found = format_args!("{}, {frames} frames at --fps {}", self.seconds, self.fps);
@@ -194,9 +195,9 @@ impl Simulate {
         })
     }
 
-    /// Says how much will be written, where that is more than is made without a thought.
+    /// Announces the size of a large data set.
     fn warn(&self, config: &DataSetConfig, size: Size) {
-        // A noisy gray picture is not made smaller by PNG.
+        // PNG does not compress a noisy gray image.
         let bytes = config.frames as f64 * config.bytes_per_frame(size);
         if bytes >= LARGE && !self.quiet {
             print::note(format_args!(
@@ -242,7 +243,7 @@ impl Simulate {
     }
 }
 
-/// An error by the flags.
+/// An error that names the flags.
 fn named(error: Error) -> Error {
     let flags = [
         ("speed_m_s", "--speed"),
@@ -267,22 +268,22 @@ impl ValueEnum for Truth {
         let about = match self {
             Self::Flow => "Pixels to the next frame, .flo",
             Self::Depth => "Metres along each pixel's ray, .npy",
-            Self::Nearness => "One over that, 1/m, .npy",
+            Self::Nearness => "Inverse of the depth, 1/m, .npy",
             Self::Divergence => "Divergence of the flow on the view sphere, 1/s, .npy",
             Self::Spherical => "Flow on the view sphere in the camera's frame, rad/s, .npy",
-            Self::Grid => "Metres along rays at even azimuths and elevations, .npy",
+            Self::Grid => "Metres along rays at evenly spaced azimuths and elevations, .npy",
         };
         Some(PossibleValue::new(self.name()).help(about))
     }
 }
 
-/// A bar on standard error, where that is a terminal.
+/// A progress bar on standard error, where that is a terminal.
 fn progress(frames: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left");
     ProgressBar::new(frames as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// The command as it was typed, so that it can be typed again.
+/// The command line as typed, quoted so that it can be repeated.
 fn typed() -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+".contains(c);
     let quoted = |word: String| match !word.is_empty() && word.chars().all(plain) {

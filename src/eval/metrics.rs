@@ -1,13 +1,13 @@
-//! Errors of a flow field against the truth, as in Baker et al., "A Database and Evaluation Methodology for Optical
-//! Flow", IJCV 92 (2011), section 4.
+//! Errors of a flow field against the ground truth, as in Baker et al., "A Database and Evaluation Methodology for
+//! Optical Flow", IJCV 92 (2011), section 4.
 
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Plane, Size};
 
-/// How far an estimate is from the truth.
+/// The errors of an estimated flow field.
 ///
-/// All but [`FlowError::density`] are over the pixels known in both and inside the mask. Where there are none, they are
-/// NaN, so that no bound on them holds by accident. Standard deviations divide by the number of pixels.
+/// All but [`FlowError::density`] are over the pixels known in both fields and inside the mask. If there are none,
+/// they are NaN, so that no bound on them holds by accident. Standard deviations divide by the number of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowError {
     /// Mean endpoint error: the length of the difference, px.
@@ -30,13 +30,14 @@ pub struct FlowError {
     pub pixels: usize,
 }
 
-/// Compares an estimate with the truth, both in pixels of displacement.
+/// Compares an estimated flow field with the ground truth.
 ///
 /// A displacement is unknown if it is NaN or over 1e9 in magnitude ([`FlowField::is_known`]). Pixels unknown in the
-/// truth, and those where the mask is not over 0.5, are left out; pixels unknown in the estimate lower the density.
+/// ground truth, and those where the mask is not over 0.5, are left out; pixels unknown in the estimate lower the
+/// density.
 ///
 /// # Errors
-/// [`Error::SizeMismatch`] if the sizes differ, and as [`FlowField::validate`] and [`Plane::validate`].
+/// [`Error::SizeMismatch`] if the sizes differ, and as in [`FlowField::validate`] and [`Plane::validate`].
 pub fn flow_error(truth: &FlowField, estimate: &FlowField, mask: Option<&Plane>) -> Result<FlowError> {
     check(truth, estimate)?;
     if let Some(mask) = mask {
@@ -59,7 +60,7 @@ pub fn flow_error(truth: &FlowField, estimate: &FlowField, mask: Option<&Plane>)
         }
     }
     let pixels = endpoint.count;
-    // 0/0 is NaN, which is what is promised where nothing could be compared.
+    // 0/0 is NaN, the documented value where nothing was compared.
     let share = |part: usize, whole: usize| part as f64 / whole as f64;
     Ok(FlowError {
         aee_px: endpoint.mean(),
@@ -74,10 +75,10 @@ pub fn flow_error(truth: &FlowField, estimate: &FlowField, mask: Option<&Plane>)
     })
 }
 
-/// The endpoint error of every pixel, px; NaN where one of the two is unknown.
+/// The endpoint error of every pixel, px; NaN where either field is unknown.
 ///
 /// # Errors
-/// [`Error::SizeMismatch`] if the sizes differ, and as [`FlowField::validate`].
+/// [`Error::SizeMismatch`] if the sizes differ, and as in [`FlowField::validate`].
 pub fn endpoint_error(a: &FlowField, b: &FlowField) -> Result<Plane> {
     check(a, b)?;
     let error = |(&a, &b): (&[f32; 2], &[f32; 2])| {
@@ -87,10 +88,10 @@ pub fn endpoint_error(a: &FlowField, b: &FlowField) -> Result<Plane> {
     Ok(Plane { size: a.size, data: a.data.iter().zip(&b.data).map(error).collect() })
 }
 
-/// The angle between (u, v, 1) of two displacements in pixels, in degrees from 0 to 180.
+/// The angle between (u, v, 1) of two displacements `[u, v]` in pixels, in degrees from 0 to 180.
 ///
-/// The usual arc cosine of the scalar product loses all digits for small angles; the arc tangent of vector product over
-/// scalar product loses none.
+/// The usual arc cosine of the scalar product loses all digits for small angles; the arc tangent of vector product
+/// over scalar product loses none.
 pub fn angular_error_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
     let ([u, v], [s, t]) = (a.map(f64::from), b.map(f64::from));
     let cross = (v - t).hypot(s - u).hypot(u * t - v * s);
@@ -114,7 +115,8 @@ fn check_size(what: &str, found: Size, expected: Size) -> Result<()> {
     Err(Error::SizeMismatch { what: what.to_owned(), found, expected })
 }
 
-/// Mean and variance in one pass (Welford 1962), which does not cancel as the difference of two sums does.
+/// Mean and variance in one pass (Welford 1962), which does not suffer the cancellation of the difference of two
+/// sums.
 #[derive(Default)]
 struct Moments {
     count: usize,

@@ -1,4 +1,4 @@
-//! How good a flow field is.
+//! Evaluation of flow fields against ground truth.
 
 mod metrics;
 mod scene;

@@ -1,4 +1,4 @@
-//! A made-up scene whose motion is known exactly.
+//! A synthetic scene whose flow is known exactly.
 
 use rayon::prelude::*;
 
@@ -8,17 +8,17 @@ use crate::kernels::hash::{finalised, scrambled};
 
 /// Grid spacings of the texture's octaves in pixels. The finest keeps the texture below half the sampling rate.
 const SPACINGS: [f64; 4] = [4.0, 8.0, 16.0, 32.0];
-/// Gray levels of an octave.
+/// Amplitude of an octave, in gray levels.
 const AMPLITUDE: f64 = 85.0;
-/// Rotation of the background from frame to frame, radians.
+/// Rotation of the background per frame, radians.
 const ROTATION: f64 = 0.008;
-/// Growth of the background from frame to frame.
+/// Magnification of the background per frame.
 const ZOOM: f64 = 1.008;
 
-/// A textured background that turns and comes nearer, and in front of it a textured disc that moves to the side.
+/// A textured background that rotates and approaches, and in front of it a textured disc that moves sideways.
 ///
-/// Every frame is sampled from the scene itself, not from another frame, so that the flow between two frames is known
-/// in closed form, at any size.
+/// Every frame is sampled from the scene itself, not from another frame, so the flow between two frames is known in
+/// closed form, at any size.
 #[derive(Clone, Debug)]
 pub struct Scene {
     size: Size,
@@ -45,7 +45,7 @@ impl Scene {
         })
     }
 
-    /// The frame of this number, in gray.
+    /// Frame `number`, in gray.
     pub fn frame(&self, number: u32) -> Image {
         let width = self.size.width as usize;
         let mut data = vec![0; self.size.pixels()];
@@ -57,7 +57,7 @@ impl Scene {
         Image { size: self.size, format: PixelFormat::Gray8, data }
     }
 
-    /// The true flow from the frame of this number to the next one: of each pixel, where what is seen there goes.
+    /// The true flow from frame `number` to the next: the displacement of the point that each pixel shows.
     pub fn flow(&self, number: u32) -> FlowField {
         let (sin, cos) = ROTATION.sin_cos();
         let [[a, b], [c, d]] = [[ZOOM * cos - 1.0, -ZOOM * sin], [ZOOM * sin, ZOOM * cos - 1.0]];
@@ -78,7 +78,7 @@ impl Scene {
         let shrink = ZOOM.powf(-time);
         let [x, y] = [at[0] - self.centre[0], at[1] - self.centre[1]];
         let behind = [shrink * (cos * x + sin * y), shrink * (cos * y - sin * x)];
-        // The edge is a pixel wide, as a camera would see it.
+        // The edge is a pixel wide, as a camera would show it.
         match (0.5 - self.distance_to_disc(at, time)).clamp(0.0, 1.0) {
             0.0 => texture(behind, 0),
             share => {
@@ -88,14 +88,14 @@ impl Scene {
         }
     }
 
-    /// Pixels to the disc's edge; negative on the disc.
+    /// The distance to the disc's edge in pixels; negative on the disc.
     fn distance_to_disc(&self, at: [f64; 2], time: f64) -> f64 {
         let [x, y]: [f64; 2] = std::array::from_fn(|i| at[i] - self.disc[i] - time * self.velocity[i]);
         x.hypot(y) - self.radius
     }
 }
 
-/// Gray level of an endless texture: random values on grids, smoothed by a cubic B-spline.
+/// The gray level of an endless texture: random values on grids, smoothed by a cubic B-spline.
 fn texture([x, y]: [f64; 2], layer: u32) -> f64 {
     let octave = |(octave, spacing): (usize, f64)| {
         let (columns, rows) = (spline(x / spacing), spline(y / spacing));
@@ -110,7 +110,7 @@ fn texture([x, y]: [f64; 2], layer: u32) -> f64 {
     128.0 + AMPLITUDE * SPACINGS.into_iter().enumerate().map(octave).sum::<f64>()
 }
 
-/// The grid point at or before a place, and the weights of the four around it.
+/// The grid point at or before a position, and the weights of the four around it.
 fn spline(at: f64) -> (i32, [f64; 4]) {
     let t = at - at.floor();
     let weights = [
@@ -122,7 +122,7 @@ fn spline(at: f64) -> (i32, [f64; 4]) {
     (at.floor() as i32, weights.map(|weight| weight / 6.0))
 }
 
-/// A number from −1 to 1 that depends on the grid point alone, by the finaliser of MurmurHash3.
+/// A pseudorandom number from −1 to 1 that depends on the grid point alone, by the finaliser of MurmurHash3.
 fn random(i: i32, j: i32, grid: u32) -> f64 {
     let hash = finalised(finalised(scrambled(grid) ^ i as u32) ^ j as u32);
     f64::from(hash) / f64::from(u32::MAX) * 2.0 - 1.0
@@ -144,7 +144,7 @@ mod tests {
         for (i, [u, v]) in flow.data.iter().enumerate() {
             let at = [(i % 160) as f64, (i / 160) as f64];
             let to = [at[0] + f64::from(*u), at[1] + f64::from(*v)];
-            // Not at the edge, where the disc covers and uncovers.
+            // Leave out the edge, where the disc covers and uncovers the background.
             if scene.distance_to_disc(at, 3.0).abs() > 1.0 && scene.distance_to_disc(to, 4.0).abs() > 1.0 {
                 let covered = scene.distance_to_disc(at, 3.0) > 0.0 && scene.distance_to_disc(to, 4.0) < 0.0;
                 if !covered {

@@ -1,5 +1,5 @@
-//! Pictures and flow fields as plain types. The files that hold them are read and written by the module `io`, which needs
-//! the feature `io`.
+//! Images and flow fields as plain types. Their files are read and written by the module `io`, which needs the
+//! feature `io`.
 
 mod size;
 mod types;

@@ -1,7 +1,7 @@
 use super::{PixelFormat, Size};
 use crate::error::{Error, Result};
 
-/// A picture that is borrowed from the caller, never copied by this type.
+/// An image borrowed from the caller; this type never copies it.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     size: Size,
@@ -11,11 +11,12 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame whose rows follow each other without a gap.
+    /// A frame whose rows follow each other without padding: `data` holds `size.pixels() * format.bytes()` bytes, row
+    /// by row.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size that is out of range, [`Error::Length`] if `data` is not exactly as long as the
-    /// size and format ask for.
+    /// [`Error::Parameter`] for a size out of range, [`Error::Length`] if `data` does not have exactly the length
+    /// that size and format require.
     pub fn new(size: Size, format: PixelFormat, data: &'a [u8]) -> Result<Self> {
         size.validate()?;
         let expected = size.pixels() * format.bytes();
@@ -25,11 +26,11 @@ impl<'a> Frame<'a> {
         Self::with_stride(size, format, size.width as usize * format.bytes(), data)
     }
 
-    /// A frame whose rows begin `stride_bytes` apart. The last row may end early, at its last pixel.
+    /// A frame whose rows start `stride_bytes` apart in `data`. The last row may end early, at its last pixel.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size that is out of range or a stride below one row, [`Error::Length`] if `data` is
-    /// too short.
+    /// [`Error::Parameter`] for a size out of range or a stride below one row, [`Error::Length`] if `data` is too
+    /// short.
     pub fn with_stride(size: Size, format: PixelFormat, stride_bytes: usize, data: &'a [u8]) -> Result<Self> {
         size.validate()?;
         let row = size.width as usize * format.bytes();
@@ -55,7 +56,7 @@ impl<'a> Frame<'a> {
         self.format
     }
 
-    /// The bytes of row `y`, without what lies between the rows.
+    /// The bytes of row `y`, without the padding between rows.
     ///
     /// # Panics
     /// If `y` is not below the height.
@@ -66,18 +67,18 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// A picture that owns its bytes, rows without gaps: what the file readers return.
+/// An image that owns its bytes, with rows without padding: the result of the file readers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width and height.
     pub size: Size,
     /// How a pixel is stored.
     pub format: PixelFormat,
-    /// `size.pixels() * format.bytes()` bytes.
+    /// `size.pixels() * format.bytes()` bytes, row by row.
     pub data: Vec<u8>,
 }
 
-/// A picture of no pixels, for a reader to fill. It is not a legal frame before that.
+/// An image without pixels, for a reader to fill. It is not a valid frame before that.
 impl Default for Image {
     fn default() -> Self {
         Self { size: Size::new(0, 0), format: PixelFormat::Gray8, data: Vec::new() }
@@ -85,16 +86,16 @@ impl Default for Image {
 }
 
 impl Image {
-    /// The picture as a borrowed frame.
+    /// The image as a borrowed frame.
     ///
     /// # Errors
-    /// As [`Frame::new`], if the fields contradict each other.
+    /// As in [`Frame::new`], if the fields contradict each other.
     pub fn frame(&self) -> Result<Frame<'_>> {
         Frame::new(self.size, self.format, &self.data)
     }
 }
 
-/// A plane of one `f32` a pixel, rows without gaps: a certainty, a confidence, a depth.
+/// A plane of one `f32` per pixel, with rows without padding: a certainty, a confidence, a depth.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Plane {
@@ -116,10 +117,10 @@ impl Plane {
     }
 }
 
-/// What an unknown flow component is written as. Everything over 1e9 in magnitude, and NaN, reads as unknown.
+/// The value written for an unknown flow component. On reading, NaN and any magnitude over 1e9 count as unknown.
 pub const UNKNOWN_FLOW: f32 = 1.666_667e9;
 
-/// Displacements in pixels from one frame to the next: x to the right, y down, rows without gaps.
+/// Displacements in pixels from one frame to the next: x to the right, y down, with rows without padding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlowField {
     /// Width and height.

@@ -6,33 +6,33 @@ use crate::error::{Error, Result};
 /// What a gyro measured at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GyroSample {
-    /// When, in seconds of the gyro's clock.
+    /// The time, in seconds of the gyro's clock.
     ///
-    /// Seconds since 1970 have a resolution of 0.2 µs here, which is far below what a rotation notices.
+    /// Seconds since 1970 have a resolution of 0.2 µs in `f64`, far finer than derotation needs.
     pub time_s: f64,
     /// Angular rate of the sensor relative to the world, in the sensor's own frame, rad/s, by the right-hand rule.
     pub gyro_rad_s: DVec3,
 }
 
-/// How a gyro's samples belong to the camera.
+/// The calibration of a gyro relative to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct GyroConfig {
-    /// What the gyro says at rest, in its own frame, rad/s. It is taken off every sample.
+    /// The gyro's reading at rest, in its own frame, rad/s. It is subtracted from every sample.
     pub bias_rad_s: DVec3,
-    /// What is added to the samples' times to get the camera's time, seconds. A frame's time is that of the middle of
-    /// its exposure.
+    /// Added to the samples' times to give the camera's time, seconds. A frame's time is that of the middle of its
+    /// exposure.
     pub time_offset_s: f64,
-    /// The rotation that takes a direction from the gyro's frame to the camera's (x right, y down, z forward).
+    /// The rotation from the gyro's frame to the camera's (x right, y down, z forward).
     pub camera_from_gyro: DMat3,
-    /// Samples further apart than this have a hole between them, seconds.
+    /// The longest allowed time between two samples, seconds. A longer one is a gap.
     pub max_gap_s: f64,
-    /// Samples that are kept. The oldest goes when there are more.
+    /// The number of samples kept. The oldest is dropped when there are more.
     pub history: usize,
 }
 
 impl Default for GyroConfig {
-    /// No bias, no offset, the gyro's axes along the camera's, a hole from 0.05 s, 4096 samples (4 s at 1 kHz).
+    /// No bias, no offset, the gyro's axes along the camera's, a gap above 0.05 s, 4096 samples (4 s at 1 kHz).
     fn default() -> Self {
         Self {
             bias_rad_s: DVec3::ZERO,

@@ -4,11 +4,11 @@ use super::history::History;
 use super::{GyroConfig, GyroFault, GyroSample};
 use crate::error::Result;
 
-/// A gyro's samples of late, and the rotations that they add up to.
+/// A gyro's recent samples, and the rotations integrated from them.
 ///
-/// Samples that are not numbers, and those whose time runs backwards, spoil the intervals that they touch and no other:
-/// [`Gyro::prev_from_cur`] says so for those. When the gyro's clock is set, what comes after counts from the second
-/// sample on, and what was known of the same times before is forgotten. A sample that comes twice counts once.
+/// Samples that are not finite, and those whose time runs backwards, invalidate the intervals that they touch and no
+/// others: [`Gyro::prev_from_cur`] reports the fault for those. After the gyro's clock is set back, samples count
+/// from the second one on, and older samples of the same times are dropped. A repeated sample counts once.
 #[derive(Clone, Debug)]
 pub struct Gyro {
     config: GyroConfig,
@@ -17,44 +17,43 @@ pub struct Gyro {
 }
 
 impl Gyro {
-    /// A gyro of which nothing has come yet. The memory for its history is taken here, and never grows.
+    /// A gyro without samples. The memory for its history is allocated here, and never grows.
     ///
     /// # Errors
-    /// As [`GyroConfig::validate`].
+    /// As in [`GyroConfig::validate`].
     pub fn new(config: GyroConfig) -> Result<Self> {
         config.validate()?;
         let camera_from_gyro = DQuat::from_mat3(&config.camera_from_gyro).normalize();
         Ok(Self { config, camera_from_gyro, history: History::new(config.history, config.max_gap_s) })
     }
 
-    /// How the samples belong to the camera.
+    /// The calibration.
     pub fn config(&self) -> &GyroConfig {
         &self.config
     }
 
-    /// Takes the next sample, in the order of time.
+    /// Adds the next sample, in the order of time.
     pub fn push(&mut self, sample: GyroSample) {
         let time_s = sample.time_s + self.config.time_offset_s;
         self.history.push(time_s, sample.gyro_rad_s - self.config.bias_rad_s);
     }
 
-    /// The rotation that takes a bearing in the camera at `cur_time_s` into the camera's frame at `prev_time_s`.
+    /// The rotation from the camera's frame at `cur_time_s` to that at `prev_time_s`.
     ///
-    /// The rates between two samples are taken to be on the straight line between them, and the rotation by such rates
-    /// is right to the fourth order of the samples' distance, by Magnus' expansion. What is left is that rates do not
-    /// run straight, of the second order: h² Δt/12 of the rates' second derivative. Half the distance has a quarter of
-    /// the error.
+    /// The rates between two samples are interpolated linearly, and by Magnus' expansion the rotation by such rates
+    /// is exact to the fourth order of the samples' distance. The remaining error is that of the interpolation, of
+    /// the second order: h² Δt/12 of the rates' second derivative. Half the distance has a quarter of the error.
     ///
     /// # Errors
-    /// [`GyroFault`] if the interval is not wholly covered by sound samples.
+    /// [`GyroFault`] if sound samples do not cover the whole interval.
     pub fn prev_from_cur(&self, prev_time_s: f64, cur_time_s: f64) -> Result<DMat3, GyroFault> {
         let mut turn = DQuat::IDENTITY;
         self.walk(prev_time_s, cur_time_s, |h, a, b| {
-            // The second term is what rotations about changing axes do not commute by.
+            // The second term: rotations about changing axes do not commute.
             turn *= DQuat::from_scaled_axis((a + b) * (h / 2.0) + a.cross(b) * (h * h / 12.0));
         })?;
         let turn = self.camera_from_gyro * turn.normalize() * self.camera_from_gyro.conjugate();
-        // Finite rates of an absurd size can still overflow.
+        // Finite rates of absurd magnitude can still overflow.
         let rotation = DMat3::from_quat(turn);
         if rotation.is_finite() { Ok(rotation) } else { Err(GyroFault::NotANumber { time_s: prev_time_s }) }
     }
@@ -62,7 +61,7 @@ impl Gyro {
     /// The mean angular rate in the camera's frame over an interval, rad/s.
     ///
     /// # Errors
-    /// As [`Gyro::prev_from_cur`]; an interval of no length has no mean.
+    /// As in [`Gyro::prev_from_cur`]; an empty interval has no mean.
     pub fn mean_rate_rad_s(&self, prev_time_s: f64, cur_time_s: f64) -> Result<DVec3, GyroFault> {
         if !(prev_time_s < cur_time_s) {
             return Err(GyroFault::Frames { prev_time_s, cur_time_s });
@@ -73,7 +72,7 @@ impl Gyro {
         if mean.is_finite() { Ok(mean) } else { Err(GyroFault::NotANumber { time_s: prev_time_s }) }
     }
 
-    /// Every piece of an interval in which the rates run straight: its length, and the rates at its ends.
+    /// Visits the pieces of an interval in which the rates are linear: the length, and the rates at both ends.
     fn walk(
         &self,
         prev_time_s: f64,

@@ -1,4 +1,4 @@
-//! The samples of late, in order of time, and what was wrong between them.
+//! The recent samples, in the order of time, and the faults between them.
 
 use std::collections::VecDeque;
 
@@ -6,24 +6,24 @@ use glam::DVec3;
 
 use super::GyroFault;
 
-/// A sample on the camera's clock, without bias.
+/// A sample in the camera's clock, with the bias subtracted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub(super) time_s: f64,
     pub(super) rate_rad_s: DVec3,
-    /// What went wrong between the entry before and this one.
+    /// The fault between the previous entry and this one.
     before: Option<GyroFault>,
 }
 
-/// A bounded queue of entries whose times rise.
+/// A bounded queue of entries with rising times.
 #[derive(Clone, Debug)]
 pub(super) struct History {
     entries: VecDeque<Entry>,
     capacity: usize,
     max_gap_s: f64,
-    /// What went wrong after the newest entry.
+    /// The fault after the newest entry.
     pending: Option<GyroFault>,
-    /// A sample that ran backwards: if the next one goes on from it, the clock was set.
+    /// A sample that ran backwards: if the next one continues from it, the clock was set.
     stray: Option<(f64, DVec3)>,
 }
 
@@ -51,7 +51,7 @@ impl History {
         let fault = GyroFault::Backwards { time_s, after_s };
         match self.stray {
             // Two in a row on another clock: the clock was set back, or one sample had been far ahead. Small steps
-            // back need no such care, time makes up for them within a gap.
+            // back need no such treatment, as time makes up for them within a gap.
             Some((stray_s, rate)) if self.follows(stray_s, time_s) && !self.follows(stray_s, after_s) => {
                 while self.entries.back().is_some_and(|entry| entry.time_s >= stray_s) {
                     self.entries.pop_back();
@@ -61,7 +61,7 @@ impl History {
                 self.append(time_s, rate_rad_s);
             }
             _ => {
-                // Which of the two samples has the wrong time cannot be known.
+                // Either of the two samples may have the wrong time.
                 if let Some(last) = self.entries.back_mut() {
                     last.before.get_or_insert(fault);
                 }
@@ -71,7 +71,7 @@ impl History {
         }
     }
 
-    /// Whether the second time comes after the first one without a gap.
+    /// Whether the second time follows the first one without a gap.
     fn follows(&self, first_s: f64, second_s: f64) -> bool {
         second_s > first_s && second_s - first_s <= self.max_gap_s
     }

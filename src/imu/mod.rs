@@ -1,4 +1,4 @@
-//! What a gyro says about the camera's rotation: its samples, and the rotation between two exposures.
+//! Gyros: their samples, and the camera's rotation between two exposures.
 //!
 //! ```
 //! use glam::DVec3;
@@ -7,11 +7,11 @@
 //! # fn main() -> viewsphere::Result<()> {
 //! let mut gyro = Gyro::new(GyroConfig::default())?;
 //! for i in 0..=20 {
-//!     // 200 Hz, half a radian a second about the camera's axis down: to the right.
+//!     // 200 Hz, 0.5 rad/s about the camera's y axis (down): a rotation to the right.
 //!     gyro.push(GyroSample { time_s: f64::from(i) * 0.005, gyro_rad_s: DVec3::new(0.0, 0.5, 0.0) });
 //! }
 //! let prev_from_cur = gyro.prev_from_cur(0.02, 0.06).expect("covered by the samples");
-//! // What is straight ahead now was 0.02 rad to the right before.
+//! // What is straight ahead now was 0.02 rad to the right in the previous frame.
 //! let before = prev_from_cur * DVec3::Z;
 //! assert!((before.x.atan2(before.z) - 0.02).abs() < 1e-12);
 //! assert!(matches!(gyro.prev_from_cur(0.08, 0.12), Err(GyroFault::NotCovered { .. })));

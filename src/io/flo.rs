@@ -1,6 +1,6 @@
 //! Middlebury's `.flo`: the number 202021.25 as `f32`, width and height as `i32`, then `u, v` as `f32`, row by row,
-//! all little-endian. Described in the `flowIO.cpp` of Baker et al., "A Database and Evaluation Methodology for Optical
-//! Flow", IJCV 92 (2011). A component over 1e9 in magnitude stands for an unknown displacement.
+//! all little-endian. Described in the `flowIO.cpp` of Baker et al., "A Database and Evaluation Methodology for
+//! Optical Flow", IJCV 92 (2011). A component over 1e9 in magnitude marks an unknown displacement.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, UNKNOWN_FLOW};
 
-/// Reads as `PIEH`.
+/// The bytes spell `PIEH`.
 const MAGIC: [u8; 4] = 202_021.25_f32.to_le_bytes();
 const HEADER: usize = 12;
 
-/// A flow field in pixels from the bytes of a `.flo` file. `path` is the name for error messages.
+/// Decodes a flow field in pixels from the bytes of a `.flo` file. `path` is the name for error messages.
 ///
-/// The values are taken as they stand; ask [`FlowField::is_known`] which of them are unknown.
+/// The values are returned as stored; ask [`FlowField::is_known`] which of them are unknown.
 ///
 /// # Errors
-/// [`Error::Format`] if the magic number is another, the size is out of range, or the length is not exactly the one
-/// that the size asks for.
+/// [`Error::Format`] for a wrong magic number, a size out of range, or a length that is not exactly the one that the
+/// size requires.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<FlowField> {
     let Some((header, data)) = bytes.split_first_chunk::<HEADER>() else {
         let expected = format!("at least {HEADER} bytes");
@@ -36,10 +36,10 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<FlowField> {
     Ok(FlowField { size, data: pairs(data) })
 }
 
-/// The bytes of a `.flo` file. An unknown displacement, NaN among them, is written as [`UNKNOWN_FLOW`] twice.
+/// Encodes a `.flo` file. Unknown displacements, including NaN, are written as [`UNKNOWN_FLOW`] in both components.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::Length`] if the field contradicts itself.
+/// [`Error::Parameter`] or [`Error::Length`] if size and data contradict each other.
 pub fn encode(flow: &FlowField) -> Result<Vec<u8>> {
     flow.validate()?;
     let mut bytes = Vec::with_capacity(HEADER + 8 * flow.data.len());
@@ -57,15 +57,15 @@ pub fn encode(flow: &FlowField) -> Result<Vec<u8>> {
 /// Reads a `.flo` file.
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode`] finds.
+/// [`Error::Io`], and the errors of [`decode`].
 pub fn read(path: impl AsRef<Path>) -> Result<FlowField> {
     decode(path.as_ref(), &read_file(path.as_ref())?)
 }
 
-/// Writes a `.flo` file, whole or not at all.
+/// Writes a `.flo` file atomically.
 ///
 /// # Errors
-/// What [`encode`] finds, and [`Error::Io`].
+/// The errors of [`encode`], and [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, flow: &FlowField) -> Result<()> {
     write_bytes(path, &encode(flow)?)
 }

@@ -1,4 +1,4 @@
-//! Flow files of every kind, told apart by their extension.
+//! Flow files of every format, told apart by their extension.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ enum Kind {
 /// extension may be in upper or lower case.
 ///
 /// # Errors
-/// [`Error::Format`] for another extension or a content that is not of the format, [`Error::Io`].
+/// [`Error::Format`] for another extension or content that does not match the format, [`Error::Io`].
 pub fn read_flow(path: impl AsRef<Path>) -> Result<FlowField> {
     let path = path.as_ref();
     match kind(path)? {
@@ -27,11 +27,11 @@ pub fn read_flow(path: impl AsRef<Path>) -> Result<FlowField> {
     }
 }
 
-/// Writes a flow field in pixels, whole or not at all, in the format that the extension names. See [`read_flow`].
+/// Writes a flow field in pixels atomically, in the format that the extension names. See [`read_flow`].
 ///
 /// # Errors
-/// [`Error::Format`] for another extension, [`Error::Parameter`] or [`Error::Length`] if the field contradicts itself,
-/// [`Error::Io`].
+/// [`Error::Format`] for another extension, [`Error::Parameter`] or [`Error::Length`] if size and data contradict
+/// each other, [`Error::Io`].
 pub fn write_flow(path: impl AsRef<Path>, flow: &FlowField) -> Result<()> {
     let path = path.as_ref();
     match kind(path)? {

@@ -1,4 +1,4 @@
-//! Lists of the frames' times: EuRoC's `#timestamp [ns],filename`, or one time in seconds per line.
+//! Lists of frame times: EuRoC's `#timestamp [ns],filename`, or one time in seconds per line.
 
 use std::fs::File;
 use std::io::Read;
@@ -6,13 +6,13 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// A list is read no further than this, so that a file of another kind is not read whole.
+/// The most bytes read, so that a file of another kind is not read whole.
 const MAX_BYTES: u64 = 1 << 28;
 
-/// Reads the frames' times, seconds. See [`decode`].
+/// Reads the frame times in seconds, one per frame. See [`decode`].
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode`] finds.
+/// [`Error::Io`], and the errors of [`decode`].
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<f64>> {
     let path = path.as_ref();
     let mut text = String::new();
@@ -22,11 +22,12 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<f64>> {
     decode(path, &text)
 }
 
-/// The frames' times in seconds from a text: the first column of each line. A first line that is no number names the column
-/// and its unit (ns, us, ms or s): `#timestamp [ns]`, `time_s`. `path` is the name for error messages.
+/// Decodes frame times in seconds, one per frame: the first column of each line. If the first line does not start
+/// with a number, it names the column and its unit (ns, us, ms or s): `#timestamp [ns]`, `time_s`. `path` is the name
+/// for error messages.
 ///
 /// # Errors
-/// [`Error::Format`] naming the line that does not begin with a finite number, for a unit that is not known, and for a text
+/// [`Error::Format`] naming the line that does not start with a finite number, for an unknown unit, and for a text
 /// without a time.
 pub fn decode(path: &Path, text: &str) -> Result<Vec<f64>> {
     let mut times = Vec::new();
@@ -55,7 +56,7 @@ pub fn decode(path: &Path, text: &str) -> Result<Vec<f64>> {
     Ok(times)
 }
 
-/// Units in a second, of a header such as `#timestamp [ns]` or `time_s`.
+/// The number of units per second, from a header such as `#timestamp [ns]` or `time_s`.
 fn unit(header: &str) -> Option<f64> {
     let name = header.trim_start_matches('#').trim().to_lowercase();
     if !(name.starts_with('t') || name.starts_with("stamp")) {

@@ -1,4 +1,4 @@
-//! Frames one after another, wherever they come from.
+//! A sequence of frames from any source.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
@@ -12,7 +12,7 @@ use crate::frame::{Image, Size};
 
 type Stream = Box<dyn Read + Send>;
 
-/// A source of frames of one size: pictures on disk, a video file, or a stream.
+/// A source of frames of one size: image files, a video file, or a stream.
 pub struct Frames(Source);
 
 enum Source {
@@ -22,22 +22,21 @@ enum Source {
 }
 
 impl Frames {
-    /// Opens what the arguments name:
+    /// Opens the source that the arguments name:
     /// - `-` is standard input, see [`Frames::from_stream`];
     /// - a name that ends in `.y4m` is a video;
-    /// - everything else are pictures, in the order given, where each argument may be a pattern
-    ///   ([`sequence::expand`]).
+    /// - all others are images, in the order given, where each argument may be a pattern ([`sequence::expand`]).
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is no argument, or a video or `-` beside others; what [`sequence::expand`] and
-    /// [`Frames::from_stream`] find; [`Error::Io`]. Pictures are opened only when their turn comes.
+    /// [`Error::Parameter`] if there is no argument, or a video or `-` beside others; the errors of
+    /// [`sequence::expand`] and [`Frames::from_stream`]; [`Error::Io`]. Images are opened only when they are read.
     pub fn open(arguments: &[String], raw_size: Option<Size>) -> Result<Self> {
         let video = |argument: &String| {
             let extension = Path::new(argument).extension();
             argument == "-" || extension.is_some_and(|e| e.eq_ignore_ascii_case("y4m"))
         };
         match arguments {
-            [] => Err(Error::parameter("input", "missing", "pictures, a .y4m file, or - for standard input")),
+            [] => Err(Error::parameter("input", "missing", "images, a .y4m file, or - for standard input")),
             [one] if one == "-" => {
                 Self::from_stream(Box::new(BufReader::new(std::io::stdin())), "standard input", raw_size)
             }
@@ -48,7 +47,7 @@ impl Frames {
             }
             many => {
                 if let Some(one) = many.iter().find(|argument| video(argument)) {
-                    let expected = "a video or a stream alone, or pictures only";
+                    let expected = "a video or a stream alone, or images only";
                     return Err(Error::parameter("input", format_args!("{one} beside others"), expected));
                 }
                 let lists =
@@ -58,12 +57,12 @@ impl Frames {
         }
     }
 
-    /// A stream, named `path` in error messages: YUV4MPEG2 if it begins with that word, otherwise raw gray bytes of
-    /// `raw_size`.
+    /// Opens a stream, named `path` in error messages: YUV4MPEG2 if it starts with that word, otherwise raw gray
+    /// bytes of `raw_size`.
     ///
     /// # Errors
-    /// [`Error::Format`] if the stream is empty, [`Error::Parameter`] if a raw size is needed and missing, what
-    /// [`Y4mReader::new`] finds, [`Error::Io`].
+    /// [`Error::Format`] if the stream is empty, [`Error::Parameter`] if a raw size is needed and missing, the errors
+    /// of [`Y4mReader::new`], [`Error::Io`].
     pub fn from_stream(
         mut stream: Box<dyn Read + Send>,
         path: impl AsRef<Path>,
@@ -81,13 +80,13 @@ impl Frames {
             return Ok(Self(Source::Y4m(Y4mReader::new(whole, path)?)));
         }
         let size = raw_size.ok_or_else(|| {
-            let expected = "WIDTHxHEIGHT, because the stream does not begin with YUV4MPEG2";
+            let expected = "WIDTHxHEIGHT, because the stream does not start with YUV4MPEG2";
             Error::parameter("size of raw frames on standard input", "missing", expected)
         })?;
         Ok(Self(Source::Raw(RawReader::new(whole, path, size)?)))
     }
 
-    /// How many frames there are in all, where that is known beforehand: for pictures.
+    /// The total number of frames, where it is known in advance: for image files.
     #[allow(clippy::len_without_is_empty, reason = "a source is never known to be empty")]
     pub fn len(&self) -> Option<u64> {
         match &self.0 {
@@ -105,7 +104,7 @@ impl Frames {
         }
     }
 
-    /// Frames a second as a fraction, where the source states it.
+    /// The frame rate as a fraction, frames per seconds, where the source states it.
     pub fn rate(&self) -> Option<(u32, u32)> {
         match &self.0 {
             Source::Y4m(video) => video.rate(),
@@ -113,7 +112,7 @@ impl Frames {
         }
     }
 
-    /// Seconds from the first frame to the last one read, where the source states a rate.
+    /// The time from the first frame to the last one read, where the source states a rate.
     pub fn time_s(&self) -> Option<f64> {
         match &self.0 {
             Source::Y4m(video) => video.time_s(),
@@ -121,7 +120,7 @@ impl Frames {
         }
     }
 
-    /// The file that the last frame was read from, where each frame is one.
+    /// The file of the last frame read, for image files.
     pub fn path(&self) -> Option<&Path> {
         match &self.0 {
             Source::Pictures { paths, next, .. } => paths.get(next.checked_sub(1)?).map(PathBuf::as_path),
@@ -129,11 +128,11 @@ impl Frames {
         }
     }
 
-    /// Reads the next frame into `image`, whose memory is used again where possible. Returns false after the last one.
+    /// Reads the next frame into `image`, whose memory is reused where possible. Returns false after the last one.
     ///
     /// # Errors
-    /// What [`picture::read`], [`Y4mReader::next_frame`] or [`RawReader::next_frame`] find; [`Error::SizeMismatch`]
-    /// naming the picture that is not as large as the first one.
+    /// The errors of [`picture::read`], [`Y4mReader::next_frame`] or [`RawReader::next_frame`];
+    /// [`Error::SizeMismatch`] naming the image that does not have the size of the first one.
     pub fn next_frame(&mut self, image: &mut Image) -> Result<bool> {
         match &mut self.0 {
             Source::Y4m(video) => video.next_frame(image),

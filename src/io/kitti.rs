@@ -1,6 +1,6 @@
-//! KITTI's flow pictures: PNG with 16-bit RGB, `u = (R − 2¹⁵)/64`, `v = (G − 2¹⁵)/64` in pixels, and B = 0 where the
+//! KITTI's flow images: PNG with 16-bit RGB, `u = (R − 2¹⁵)/64`, `v = (G − 2¹⁵)/64` in pixels, and B = 0 where the
 //! displacement is unknown. Described in the development kit of Menze and Geiger, "Object Scene Flow for Autonomous
-//! Vehicles", CVPR 2015. Displacements from −512 to 511.984 px can be stored, in steps of 1/64 px.
+//! Vehicles", CVPR 2015. The format holds displacements from −512 to 511.984 px, in steps of 1/64 px.
 
 use std::path::Path;
 
@@ -13,12 +13,12 @@ use crate::frame::{FlowField, UNKNOWN_FLOW};
 const ZERO: f32 = 32768.0;
 const STEPS: f32 = 64.0;
 
-/// A flow field in pixels from the bytes of a KITTI PNG. `path` is the name for error messages.
+/// Decodes a flow field in pixels from the bytes of a KITTI PNG. `path` is the name for error messages.
 ///
 /// A pixel that the file marks as invalid becomes [`UNKNOWN_FLOW`] in both components.
 ///
 /// # Errors
-/// [`Error::Format`] if this is no PNG, not 16-bit RGB, cut off, or of a size out of range.
+/// [`Error::Format`] if the content is not a PNG, not 16-bit RGB, truncated, or of a size out of range.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<FlowField> {
     if !bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
         return Err(picture::unknown_content(path, bytes, "a PNG signature"));
@@ -36,11 +36,11 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<FlowField> {
     Ok(FlowField { size, data })
 }
 
-/// The bytes of a KITTI PNG. Components are rounded to the nearest 1/64 px; a displacement that is unknown or that the
+/// Encodes a KITTI PNG. Components are rounded to the nearest 1/64 px; a displacement that is unknown or that the
 /// format cannot hold is marked as invalid (0, 0, 0), never clamped to a wrong value.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::Length`] if the field contradicts itself.
+/// [`Error::Parameter`] or [`Error::Length`] if size and data contradict each other.
 pub fn encode(flow: &FlowField) -> Result<Vec<u8>> {
     flow.validate()?;
     let mut bytes = Vec::with_capacity(6 * flow.data.len());
@@ -54,7 +54,7 @@ pub fn encode(flow: &FlowField) -> Result<Vec<u8>> {
     picture::encode_png_as(flow.size, &bytes, image::ExtendedColorType::Rgb16)
 }
 
-/// The sample of a component, or nothing if it is NaN or out of range.
+/// The stored sample of a component; none if it is NaN or out of range.
 fn stored(component: f32) -> Option<u16> {
     // 64 is a power of two: the product is exact, and so is the rounding.
     let sample = (component * STEPS).round() + ZERO;
@@ -64,15 +64,15 @@ fn stored(component: f32) -> Option<u16> {
 /// Reads a KITTI PNG.
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode`] finds.
+/// [`Error::Io`], and the errors of [`decode`].
 pub fn read(path: impl AsRef<Path>) -> Result<FlowField> {
     decode(path.as_ref(), &read_file(path.as_ref())?)
 }
 
-/// Writes a KITTI PNG, whole or not at all.
+/// Writes a KITTI PNG atomically.
 ///
 /// # Errors
-/// What [`encode`] finds, and [`Error::Io`].
+/// The errors of [`encode`], and [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, flow: &FlowField) -> Result<()> {
     write_bytes(path, &encode(flow)?)
 }

@@ -1,7 +1,7 @@
-//! Files: pictures, videos, flow fields, cameras and gyro logs. The feature `io` turns this module on.
+//! Files: images, videos, flow fields, cameras and gyro logs. Enabled by the feature `io`.
 //!
-//! Every format has its own module, with `decode` and `encode` over bytes and `read` and `write` over files. What is read
-//! is checked against the length of the file before memory is taken for it. Files are written whole or not at all
+//! Every format has its own module, with `decode` and `encode` over bytes and `read` and `write` over files. Readers
+//! check a header against the length of the file before they allocate memory for it. Files are written atomically
 //! ([`write_atomic`]).
 
 pub mod camera;

@@ -1,4 +1,4 @@
-//! NumPy's `.npy`, as far as flow and planes need it: `float32`, little-endian, row by row (C order), of shape
+//! NumPy's `.npy`, the subset for flow and planes: `float32`, little-endian, row by row (C order), of shape
 //! height × width × 2 or height × width. Versions 1.0 and 2.0 of the header are read, 1.0 is written.
 //! Described in NumPy's documentation, `numpy.lib.format`.
 
@@ -10,44 +10,45 @@ use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Plane, Size};
 
-/// A flow field in pixels from the bytes of an array of height × width × 2. `path` is the name for error messages.
+/// Decodes a flow field in pixels from an array of height × width × 2. `path` is the name for error messages.
 ///
 /// # Errors
-/// [`Error::Format`] if this is no such array of little-endian `float32` in C order, if its size is out of range, or
-/// if the length is not exactly the one that the shape asks for.
+/// [`Error::Format`] if the content is no such array of little-endian `float32` in C order, if its size is out of
+/// range, or if the length is not exactly the one that the shape requires.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<FlowField> {
     let (size, data) = split(path, bytes, &[2])?;
     Ok(FlowField { size, data: pairs(data) })
 }
 
-/// The bytes of a flow field as an array of height × width × 2. Every value is kept as it is, NaN too.
+/// Encodes a flow field as an array of height × width × 2. Every value is kept, including NaN.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::Length`] if the field contradicts itself.
+/// [`Error::Parameter`] or [`Error::Length`] if size and data contradict each other.
 pub fn encode(flow: &FlowField) -> Result<Vec<u8>> {
     flow.validate()?;
     Ok(join(flow.size, ", 2", flow.data.as_flattened()))
 }
 
-/// A plane from the bytes of an array of height × width. `path` is the name for error messages.
+/// Decodes a plane from an array of height × width. `path` is the name for error messages.
 ///
 /// # Errors
-/// As [`decode`], for the other shape.
+/// As in [`decode`], for the other shape.
 pub fn decode_plane(path: &Path, bytes: &[u8]) -> Result<Plane> {
     let (size, data) = split(path, bytes, &[])?;
     Ok(Plane { size, data: floats(data).collect() })
 }
 
-/// The bytes of a plane as an array of height × width. Every value is kept as it is, NaN too.
+/// Encodes a plane as an array of height × width. Every value is kept, including NaN.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::Length`] if the plane contradicts itself.
+/// [`Error::Parameter`] or [`Error::Length`] if size and data contradict each other.
 pub fn encode_plane(plane: &Plane) -> Result<Vec<u8>> {
     plane.validate()?;
     Ok(join(plane.size, "", &plane.data))
 }
 
-/// The bytes of three values a pixel as an array of height × width × 3. Every value is kept as it is, NaN too.
+/// Encodes three values per pixel as an array of height × width × 3. `triples` holds one triple per pixel, row by
+/// row. Every value is kept, including NaN.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a size out of range, [`Error::Length`] if there are not as many triples as pixels.
@@ -62,15 +63,15 @@ pub fn encode_triples(size: Size, triples: &[[f32; 3]]) -> Result<Vec<u8>> {
 /// Reads a flow field. See [`decode`].
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode`] finds.
+/// [`Error::Io`], and the errors of [`decode`].
 pub fn read(path: impl AsRef<Path>) -> Result<FlowField> {
     decode(path.as_ref(), &read_file(path.as_ref())?)
 }
 
-/// Writes a flow field, whole or not at all.
+/// Writes a flow field atomically.
 ///
 /// # Errors
-/// What [`encode`] finds, and [`Error::Io`].
+/// The errors of [`encode`], and [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, flow: &FlowField) -> Result<()> {
     write_bytes(path, &encode(flow)?)
 }
@@ -78,20 +79,20 @@ pub fn write(path: impl AsRef<Path>, flow: &FlowField) -> Result<()> {
 /// Reads a plane. See [`decode_plane`].
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode_plane`] finds.
+/// [`Error::Io`], and the errors of [`decode_plane`].
 pub fn read_plane(path: impl AsRef<Path>) -> Result<Plane> {
     decode_plane(path.as_ref(), &read_file(path.as_ref())?)
 }
 
-/// Writes a plane, whole or not at all.
+/// Writes a plane atomically.
 ///
 /// # Errors
-/// What [`encode_plane`] finds, and [`Error::Io`].
+/// The errors of [`encode_plane`], and [`Error::Io`].
 pub fn write_plane(path: impl AsRef<Path>, plane: &Plane) -> Result<()> {
     write_bytes(path, &encode_plane(plane)?)
 }
 
-/// Size and values of an array whose shape is height, width and then `inner`.
+/// The size and values of an array whose shape is height, width and then `inner`.
 fn split<'a>(path: &Path, bytes: &'a [u8], inner: &[u64]) -> Result<(Size, &'a [u8])> {
     let (header, data) = Header::split(path, bytes)?;
     let size = match header.shape[..] {

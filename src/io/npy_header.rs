@@ -1,20 +1,20 @@
-//! The header of `.npy`: a Python dictionary as text. Only the three keys of the format are understood.
+//! The header of `.npy`: a Python dictionary as text, with exactly the three keys of the format.
 
 use std::path::Path;
 
 use crate::error::{Error, Result};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// NumPy itself refuses longer headers.
+/// The longest header; NumPy itself refuses longer ones.
 const MAX_HEADER: usize = 10_000;
 
-/// What a header of little-endian `float32` in C order says besides.
+/// What a header of little-endian `float32` in C order states besides: the shape.
 pub(super) struct Header {
     pub(super) shape: Vec<u64>,
 }
 
 impl Header {
-    /// The header and the bytes after it.
+    /// Parses the header, and returns it with the bytes after it.
     pub(super) fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Self, &'a [u8])> {
         let short = || {
             Error::format(
@@ -48,10 +48,10 @@ impl Header {
         Ok((Self::parse(path, text)?, data))
     }
 
-    /// A whole header of version 1.0. `shape` is what stands between the parentheses.
+    /// A whole header of version 1.0. `shape` is the text between the parentheses.
     pub(super) fn bytes(shape: &str) -> Vec<u8> {
         let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({shape}), }}");
-        // The data begins at a multiple of 64 bytes, so that it can be mapped into memory.
+        // The data starts at a multiple of 64 bytes, so that it can be mapped into memory.
         let before = MAGIC.len() + 4;
         let length = (before + text.len() + 1).next_multiple_of(64) - before;
         text.push_str(&" ".repeat(length - text.len() - 1));
@@ -103,7 +103,7 @@ fn dictionary(text: &str) -> Option<(&str, bool, Vec<u64>)> {
     (rest == "}").then_some((descr?, fortran?, shape?))
 }
 
-/// Keeps a value and hands on what follows it. A key that comes twice is refused.
+/// Stores a value and returns the text after it. A repeated key is refused.
 fn store<'a, T>(slot: &mut Option<T>, (value, rest): (T, &'a str)) -> Option<&'a str> {
     slot.replace(value).is_none().then_some(rest)
 }
@@ -121,7 +121,7 @@ fn boolean(text: &str) -> Option<(bool, &str)> {
 fn tuple(text: &str) -> Option<(Vec<u64>, &str)> {
     let (inside, rest) = text.strip_prefix('(')?.split_once(')')?;
     let inside = inside.trim();
-    // A tuple of one is written with a comma after it.
+    // A tuple of one has a trailing comma.
     let inside = inside.strip_suffix(',').unwrap_or(inside);
     let sides = inside.split(',').map(|side| side.trim().parse().ok()).collect::<Option<Vec<u64>>>()?;
     Some((sides, rest))

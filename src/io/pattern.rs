@@ -1,4 +1,4 @@
-//! The patterns of [`super::sequence`], without the files.
+//! The patterns of [`super::sequence`], independent of files.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub(super) struct Numbered {
 }
 
 impl Numbered {
-    /// Reads `name`, the last part of `path`, which is what errors name.
+    /// Parses `name`, the last part of `path`, which errors name.
     pub(super) fn parse(path: &Path, name: &str) -> Result<Self> {
         let wrong =
             || Error::format(path, "pattern", name, "one number such as %d or %04d (and %% for a percent)");
@@ -31,7 +31,7 @@ impl Numbered {
             let (flags, after) = after.split_once('d').ok_or_else(wrong)?;
             let width = match flags {
                 "" => 0,
-                // No file system has names so long; a large width would only cost memory.
+                // No file system has names that long; a large width would only cost memory.
                 _ => flags.parse().ok().filter(|width| (1..256).contains(width)).ok_or_else(wrong)?,
             };
             if !flags.bytes().all(|b| b.is_ascii_digit()) || number.is_some() {
@@ -46,7 +46,7 @@ impl Numbered {
         Ok(Self { before, after, width, zeros })
     }
 
-    /// The number in a name, if the pattern would have written it so.
+    /// The number in a name, if the pattern would have written it that way.
     pub(super) fn number(&self, name: &str) -> Option<u64> {
         let text = name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())?;
         let number: u64 = text.trim_start_matches(' ').parse().ok()?;
@@ -63,7 +63,7 @@ pub(super) fn glob_matches(pattern: &str, name: &str) -> bool {
     }
     let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut p, mut n) = (0, 0);
-    // Only the last star can need to take more: this keeps the work below pattern × name.
+    // Only the last star can need to match more: this bounds the work by pattern × name.
     let mut last_star = None;
     while n < name.len() {
         match pattern.get(p) {

@@ -1,4 +1,4 @@
-//! Pictures in PNG, JPEG and PNM files. The content tells the format; the name does not matter.
+//! Images in PNG, JPEG and PNM files. The content tells the format; the name does not matter.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -11,20 +11,21 @@ use super::write_bytes;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Size};
 
-/// A picture as the decoder gives it, its size checked.
+/// A decoder's image, its size checked.
 pub(super) struct Decoded {
     pub(super) size: Size,
     pub(super) picture: DynamicImage,
 }
 
-/// A picture from the bytes of a PNG, JPEG or PNM (PBM, PGM, PPM, PAM) file. `path` is the name for error messages.
+/// Decodes an image from the bytes of a PNG, JPEG or PNM (PBM, PGM, PPM, PAM) file. `path` is the name for error
+/// messages.
 ///
 /// Gray stays gray ([`PixelFormat::Gray8`] or [`PixelFormat::Gray16`], alpha dropped); palettes and colour become
-/// [`PixelFormat::Rgb8`] or [`PixelFormat::Rgba8`], with 16-bit colour rounded to 8. PNM samples are scaled so that the
-/// file's largest value is white.
+/// [`PixelFormat::Rgb8`] or [`PixelFormat::Rgba8`], with 16-bit colour rounded to 8. PNM samples are scaled so that
+/// the file's largest value is white.
 ///
 /// # Errors
-/// [`Error::Format`] if the content is none of these formats, is cut off or damaged, or has a size out of range.
+/// [`Error::Format`] if the content is none of these formats, is truncated or damaged, or has a size out of range.
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Image> {
     let Decoded { size, picture } = decode_dynamic(path, bytes)?;
     let wide = |samples: Vec<u16>| samples.into_iter().flat_map(u16::to_ne_bytes).collect();
@@ -41,18 +42,18 @@ pub fn decode(path: &Path, bytes: &[u8]) -> Result<Image> {
     Ok(Image { size, format, data })
 }
 
-/// Reads a picture. See [`decode`].
+/// Reads an image. See [`decode`].
 ///
 /// # Errors
-/// [`Error::Io`], and what [`decode`] finds.
+/// [`Error::Io`], and the errors of [`decode`].
 pub fn read(path: impl AsRef<Path>) -> Result<Image> {
     decode(path.as_ref(), &read_file(path.as_ref())?)
 }
 
-/// The bytes of a PNG file, of the image's own pixel format.
+/// Encodes a PNG file, in the image's own pixel format.
 ///
 /// # Errors
-/// As [`Image::frame`], if the image contradicts itself.
+/// As in [`Image::frame`], if the image contradicts itself.
 pub fn encode_png(image: &Image) -> Result<Vec<u8>> {
     image.frame()?;
     let colour = match image.format {
@@ -64,10 +65,10 @@ pub fn encode_png(image: &Image) -> Result<Vec<u8>> {
     encode_png_as(image.size, &image.data, colour)
 }
 
-/// Writes a PNG file, whole or not at all.
+/// Writes a PNG file atomically.
 ///
 /// # Errors
-/// What [`encode_png`] finds, and [`Error::Io`].
+/// The errors of [`encode_png`], and [`Error::Io`].
 pub fn write_png(path: impl AsRef<Path>, image: &Image) -> Result<()> {
     write_bytes(path, &encode_png(image)?)
 }
@@ -105,20 +106,20 @@ pub(super) fn decode_dynamic(path: &Path, bytes: &[u8]) -> Result<Decoded> {
     }
 }
 
-/// The most pixels that a file of this length can hold, so that a short file cannot ask for much memory.
+/// The most pixels that a file of this length can hold, so that a short file cannot claim much memory.
 fn most_pixels(format: ImageFormat, bytes: &[u8]) -> u64 {
     let bits = bytes.len() as u64 * 8;
     match format {
-        // Deflate shrinks by 1032 at best. Bits a sample and the colour type stand at the end of the first chunk.
+        // Deflate compresses by 1032 at best. Bits per sample and colour type are at the end of the first chunk.
         ImageFormat::Png => {
             let channels = [1, 1, 3, 1, 2, 1, 4];
             let depth = bytes.get(24).map_or(1, |&depth| u64::from(depth).max(1));
             let kind = bytes.get(25).map_or(0, |&kind| usize::from(kind));
             bits * 1032 / (depth * channels.get(kind).copied().unwrap_or(1))
         }
-        // A block of 8×8 pixels takes at least a bit.
+        // A block of 8×8 pixels takes at least one bit.
         ImageFormat::Jpeg => bits * 64,
-        // A bitmap takes a bit a pixel, everything else more.
+        // A bitmap takes one bit per pixel, everything else more.
         _ => bits,
     }
 }
@@ -131,21 +132,21 @@ fn limits() -> Limits {
     limits
 }
 
-/// Checks the size in a PNG's header: the decoder refuses a bad one without saying what it is.
+/// Checks the size in a PNG's header: the decoder refuses a bad one without naming it.
 fn check_png_size(path: &Path, bytes: &[u8]) -> Result<()> {
     let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     match (side(16), side(20)) {
         (Some(width), Some(height)) => header_size(path, width.into(), height.into()).map(|_| ()),
-        // Too short for a header, which the decoder tells.
+        // Too short for a header, which the decoder reports.
         _ => Ok(()),
     }
 }
 
-/// Checks that the scans of a JPEG are followed by the end marker. The decoder itself would fill the missing rest of a
-/// file that was cut off with gray, which is worse than an error.
+/// Checks that the scans of a JPEG are followed by the end marker. The decoder itself would fill the missing rest of
+/// a truncated file with gray, which is worse than an error.
 fn check_jpeg_end(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut at = 2;
-    // Segments are jumped over by their length, because a thumbnail inside one has an end marker of its own.
+    // Skip segments by their length, because a thumbnail inside one has an end marker of its own.
     while let Some(&[0xFF, kind, high, low]) = bytes.get(at..at + 4) {
         if kind == 0xFF {
             at += 1;
@@ -163,7 +164,7 @@ fn check_jpeg_end(path: &Path, bytes: &[u8]) -> Result<()> {
     Err(Error::format(path, "picture", "cut off", "a JPEG with its end marker"))
 }
 
-/// The error of content that is none of the accepted formats.
+/// The error for content in none of the accepted formats.
 pub(super) fn unknown_content(path: &Path, bytes: &[u8], expected: &'static str) -> Error {
     let found = match bytes {
         [] => "an empty file".to_owned(),
@@ -173,7 +174,7 @@ pub(super) fn unknown_content(path: &Path, bytes: &[u8], expected: &'static str)
 }
 
 fn broken(path: &Path, problem: &image::ImageError) -> Error {
-    // Some of the decoder's messages run over several lines; an error is one.
+    // Some of the decoder's messages have several lines; an error has one.
     let found = problem.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     Error::format(path, "picture", format!("damaged ({found})"), "a whole one")
 }

@@ -1,4 +1,4 @@
-//! Raw video: gray bytes, frame after frame, with no header at all.
+//! Raw video: gray bytes, frame after frame, without a header.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -7,8 +7,7 @@ use super::read::fill;
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Size};
 
-/// Reads frames of [`PixelFormat::Gray8`] of a size that the caller knows, as `ffmpeg … -f rawvideo -pix_fmt gray -`
-/// writes them.
+/// Reads frames of [`PixelFormat::Gray8`] of a known size, as `ffmpeg … -f rawvideo -pix_fmt gray -` writes them.
 #[derive(Debug)]
 pub struct RawReader<R> {
     reader: R,
@@ -31,21 +30,21 @@ impl<R: Read> RawReader<R> {
         self.size
     }
 
-    /// Whole frames read so far.
+    /// The number of whole frames read.
     pub fn frames_read(&self) -> u64 {
         self.frames
     }
 
-    /// Reads the next frame into `image`, whose memory is used again. Returns false at the end of the stream; `image` is
-    /// then left alone.
+    /// Reads the next frame into `image`, whose memory is reused. Returns false at the end of the stream; `image` is
+    /// left unchanged then.
     ///
     /// # Errors
-    /// [`Error::Format`] if the last frame is cut off, with the number of whole frames before it; [`Error::Io`]. The
-    /// content of `image` is not to be used then.
+    /// [`Error::Format`] if the last frame is truncated, with the number of whole frames before it; [`Error::Io`].
+    /// The content of `image` is unspecified then.
     pub fn next_frame(&mut self, image: &mut Image) -> Result<bool> {
         let count = self.size.pixels() as u64;
         let failed = |source| Error::io(&self.path, source);
-        // The first byte on its own, so that the last frame is still whole in `image` after the end.
+        // The first byte separately, so that `image` still holds the last frame at the end of the stream.
         let mut first = Vec::new();
         if !fill(&mut self.reader, 1, &mut first).map_err(failed)? {
             return Ok(false);

@@ -1,4 +1,4 @@
-//! What the readers share: whole files of a bounded length, and sizes checked before anything is allocated.
+//! Helpers of the readers: whole files of bounded length, and sizes checked before anything is allocated.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -7,10 +7,10 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 
-/// No file of one picture or flow field is longer: the largest size at 8 bytes a pixel, and room for headers.
+/// The longest file of one image or flow field: the largest size at 8 bytes per pixel, and room for headers.
 const MAX_FILE: u64 = (Size::MAX_SIDE as u64).pow(2) * 8 + (1 << 20);
 
-/// The bytes of a file that holds one picture or flow field.
+/// Reads a file that holds one image or flow field.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
     let failed = |source| Error::io(path, source);
     let mut bytes = Vec::new();
@@ -31,7 +31,7 @@ pub(crate) fn header_size(path: &Path, width: i64, height: i64) -> Result<Size> 
     })
 }
 
-/// Checks a file's length against the one that its header asks for.
+/// Checks a file's length against the one that its header requires.
 pub(crate) fn check_length(path: &Path, found: usize, expected: u64) -> Result<()> {
     if found as u64 == expected {
         return Ok(());
@@ -44,19 +44,19 @@ pub(crate) fn check_length(path: &Path, found: usize, expected: u64) -> Result<(
     ))
 }
 
-/// Little-endian `f32` values; bytes left over at the end are ignored.
+/// Little-endian `f32` values; remaining bytes at the end are ignored.
 pub(crate) fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
     bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b))
 }
 
-/// Little-endian pairs of `f32`; bytes left over at the end are ignored.
+/// Little-endian pairs of `f32`; remaining bytes at the end are ignored.
 pub(crate) fn pairs(bytes: &[u8]) -> Vec<[f32; 2]> {
     let pair = |b: &[u8; 8]| [[b[0], b[1], b[2], b[3]], [b[4], b[5], b[6], b[7]]].map(f32::from_le_bytes);
     bytes.as_chunks::<8>().0.iter().map(pair).collect()
 }
 
-/// Replaces `data` by the next `count` bytes of a stream, or by fewer at its end. The memory grows with the bytes that
-/// really come, not with what a header promised.
+/// Replaces `data` by the next `count` bytes of a stream, or by fewer at its end. The memory grows with the bytes
+/// that arrive, not with what a header promised.
 pub(crate) fn fill(reader: &mut impl Read, count: u64, data: &mut Vec<u8>) -> io::Result<bool> {
     data.clear();
     reader.take(count).read_to_end(data)?;

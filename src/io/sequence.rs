@@ -1,4 +1,4 @@
-//! Picture sequences on disk: numbered names as in `frames/%04d.png`, and names with `*` and `?`.
+//! Image sequences on disk: numbered names as in `frames/%04d.png`, and names with `*` and `?`.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -10,17 +10,17 @@ use crate::error::{Error, Result};
 
 /// The files that an argument stands for.
 ///
-/// A file that exists is itself. Otherwise, in the file name but not in its folder:
-/// - `%d`, `%4d` or `%04d` stands for a number as `printf` writes it (`%%` is a percent sign). The sequence begins at
+/// The name of an existing file stands for itself. Otherwise, in the file name but not in its folder:
+/// - `%d`, `%4d` or `%04d` stands for a number as `printf` writes it (`%%` is a percent sign). The sequence starts at
 ///   the lowest number in the folder and ends at the first gap.
 /// - `*` stands for any text and `?` for one character. All matching files are taken, in the order of [`natural`];
-///   hidden ones only if the pattern begins with a dot.
+///   hidden ones only if the pattern starts with a dot.
 ///
-/// A name with neither is handed on as it is, so that opening it gives the error.
+/// A name with neither is returned unchanged, so that opening it gives the error.
 ///
 /// # Errors
-/// [`Error::Io`] naming the folder if it cannot be listed; [`Error::Format`] naming the pattern if nothing matches or
-/// if it is not one of the above, or a folder.
+/// [`Error::Io`] naming the folder if it cannot be listed; [`Error::Format`] naming the pattern if nothing matches,
+/// if it is malformed, or if it is a folder.
 pub fn expand(argument: &str) -> Result<Vec<PathBuf>> {
     let path = Path::new(argument);
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -54,7 +54,7 @@ pub fn expand(argument: &str) -> Result<Vec<PathBuf>> {
     Ok(names.into_iter().map(|name| path.with_file_name(name)).collect())
 }
 
-/// The names in a pattern's folder. Names that are not UTF-8 cannot match, as patterns are.
+/// The file names in a pattern's folder. Names that are not UTF-8 cannot match, as patterns are UTF-8.
 fn list(pattern: &Path) -> Result<Vec<String>> {
     let folder = folder(pattern);
     let failed = |source| Error::io(folder, source);
@@ -65,7 +65,7 @@ fn list(pattern: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// The order of names in which numbers inside them count as numbers: `a2` before `a10`.
+/// Compares names so that numbers inside them count as numbers: `a2` before `a10`.
 pub fn natural(a: &str, b: &str) -> Ordering {
     let (mut left, mut right) = (a, b);
     loop {
@@ -73,12 +73,12 @@ pub fn natural(a: &str, b: &str) -> Ordering {
         let order = if one > 0 && two > 0 {
             let (n, m) = (left[..one].trim_start_matches('0'), right[..two].trim_start_matches('0'));
             (left, right) = (&left[one..], &right[two..]);
-            // Of any length, so never parsed: the longer one is the larger.
+            // Numbers may have any length, so they are not parsed: the longer one is the larger.
             n.len().cmp(&m.len()).then_with(|| n.cmp(m))
         } else {
             let (mut one, mut two) = (left.chars(), right.chars());
             let order = match (one.next(), two.next()) {
-                // Equal as far as the numbers go; `01` and `1` still need an order.
+                // Equal up to leading zeros; `01` and `1` still need an order.
                 (None, None) => return a.cmp(b),
                 (n, m) => n.cmp(&m),
             };

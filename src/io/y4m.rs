@@ -1,5 +1,5 @@
 //! YUV4MPEG2 (`.y4m`), uncompressed video as `ffmpeg … -f yuv4mpegpipe -` writes it: a text header, then frames of
-//! planar luma and chroma, each after a line `FRAME`. Described in mjpegtools' `yuv4mpeg(5)`; the depths over 8 bits are
+//! planar luma and chroma, each after a line `FRAME`. Described in mjpegtools' `yuv4mpeg(5)`; depths over 8 bits are
 //! FFmpeg's extension, little-endian words of 16 bits.
 
 use std::io::{self, Read};
@@ -10,13 +10,13 @@ use super::y4m_header::{Header, MAGIC};
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Size};
 
-/// The longest header or frame line that is accepted, in bytes. FFmpeg's are below 200.
+/// The longest accepted header or frame line, in bytes. FFmpeg's are below 200.
 const MAX_LINE: usize = 4096;
 
 /// Reads the luma of a video frame by frame. Chroma is skipped, never stored.
 ///
-/// Luma is given as it stands in the file, commonly 16 (black) to 235 (white) of 255. Luma of more than 8 bits becomes
-/// [`PixelFormat::Gray16`], shifted up so that the highest bit of the file is the highest of the 16.
+/// Luma is returned as stored, commonly 16 (black) to 235 (white) of 255. Luma of more than 8 bits becomes
+/// [`PixelFormat::Gray16`], shifted up so that the file's highest bit is the highest of the 16.
 #[derive(Debug)]
 pub struct Y4mReader<R> {
     reader: R,
@@ -29,10 +29,10 @@ impl<R: Read> Y4mReader<R> {
     /// Reads the header. `path` is the name for error messages. The reader should be buffered.
     ///
     /// # Errors
-    /// [`Error::Format`] for anything but a header with a legal size and a known colour space, [`Error::Io`].
+    /// [`Error::Format`] unless the header has a size in range and a known colour space, [`Error::Io`].
     pub fn new(mut reader: R, path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref().to_owned();
-        // The magic word first: what is no video at all would otherwise be searched for the end of a line.
+        // The magic word first, so that other content is not searched for the end of a line.
         let mut magic = Vec::new();
         let whole = fill(&mut reader, MAGIC.len() as u64, &mut magic).map_err(|e| Error::io(&path, e))?;
         if !whole || magic != MAGIC.as_bytes() {
@@ -49,33 +49,33 @@ impl<R: Read> Y4mReader<R> {
         self.header.size
     }
 
-    /// The format that the frames are given in.
+    /// The pixel format of the frames.
     pub fn format(&self) -> PixelFormat {
         if self.header.depth > 8 { PixelFormat::Gray16 } else { PixelFormat::Gray8 }
     }
 
-    /// Frames a second as a fraction, if the header states it.
+    /// The frame rate as a fraction, frames per seconds, if the header states it.
     pub fn rate(&self) -> Option<(u32, u32)> {
         self.header.rate
     }
 
-    /// Whole frames read so far.
+    /// The number of whole frames read.
     pub fn frames_read(&self) -> u64 {
         self.frames
     }
 
-    /// Seconds from the first frame to the last one read, if the rate is known and a frame was read.
+    /// The time from the first frame to the last one read, if the rate is known and a frame was read.
     pub fn time_s(&self) -> Option<f64> {
         let (frames, seconds) = self.header.rate?;
         Some(self.frames.checked_sub(1)? as f64 * f64::from(seconds) / f64::from(frames))
     }
 
-    /// Reads the next frame into `image`, whose memory is used again. Returns false at the end of the video; `image` is
-    /// then left alone.
+    /// Reads the next frame into `image`, whose memory is reused. Returns false at the end of the video; `image` is
+    /// left unchanged then.
     ///
     /// # Errors
-    /// [`Error::Format`] if a frame does not begin with `FRAME` or is cut off, with the number of whole frames before
-    /// it; [`Error::Io`]. The content of `image` is not to be used then.
+    /// [`Error::Format`] if a frame does not start with `FRAME` or is truncated, with the number of whole frames
+    /// before it; [`Error::Io`]. The content of `image` is unspecified then.
     pub fn next_frame(&mut self, image: &mut Image) -> Result<bool> {
         let Some(line) = read_line(&mut self.reader, &self.path, "frame header")? else { return Ok(false) };
         if line != "FRAME" && !line.starts_with("FRAME ") {
@@ -96,7 +96,7 @@ impl<R: Read> Y4mReader<R> {
         if format == PixelFormat::Gray16 {
             let depth = self.header.depth;
             for sample in image.data.as_chunks_mut::<2>().0 {
-                // A sample over its depth is out of the format: white is the nearest meaning.
+                // A sample beyond its depth violates the format: white is the nearest meaning.
                 let value = u16::from_le_bytes(*sample).min(u16::MAX >> (16 - depth));
                 *sample = (value << (16 - depth)).to_ne_bytes();
             }
@@ -107,7 +107,7 @@ impl<R: Read> Y4mReader<R> {
     }
 }
 
-/// A line without its end, or nothing at the clean end of the stream.
+/// A line without its end, or `None` at the regular end of the stream.
 fn read_line(reader: &mut impl Read, path: &Path, what: &'static str) -> Result<Option<String>> {
     let mut line = Vec::new();
     let mut byte = Vec::new();

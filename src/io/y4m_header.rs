@@ -13,14 +13,14 @@ const KNOWN: &str = "mono, 411, 420, 422 or 444, with 8 to 16 bits";
 #[derive(Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) size: Size,
-    /// Frames, seconds; both over 0.
+    /// Frames and seconds, both over 0.
     pub(super) rate: Option<(u32, u32)>,
-    /// Bits of a sample, 8 to 16.
+    /// Bits per sample, 8 to 16.
     pub(super) depth: u32,
     chroma: Chroma,
 }
 
-/// How many chroma planes there are and how much smaller than the luma.
+/// The number of chroma planes, and their size relative to the luma.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chroma {
     planes: u64,
@@ -29,7 +29,7 @@ struct Chroma {
 }
 
 impl Header {
-    /// What follows the magic word, up to the end of the line.
+    /// Parses the text after the magic word, up to the end of the line.
     pub(super) fn parse(path: &Path, line: &str) -> Result<Self> {
         let (mut width, mut height, mut rate) = (None, None, None);
         // The specification's default, which old writers rely on.
@@ -41,7 +41,7 @@ impl Header {
                 (Some('H'), value) => height = Some(side(path, "height", value)?),
                 (Some('F'), value) => rate = fraction(path, value)?,
                 (Some('C'), value) => space = value,
-                // Interlacing, pixel aspect and comments change nothing for the luma.
+                // Interlacing, pixel aspect and comments do not affect the luma.
                 (Some('I' | 'A' | 'X'), _) => {}
                 _ => {
                     let found: String = word.chars().take(40).collect();
@@ -77,7 +77,7 @@ fn side(path: &Path, what: &'static str, value: &str) -> Result<i64> {
     value.parse::<u32>().map(i64::from).map_err(|_| wrong())
 }
 
-/// `30000:1001`; `0:0` stands for an unknown rate.
+/// Parses a fraction such as `30000:1001`; `0:0` is an unknown rate.
 fn fraction(path: &Path, value: &str) -> Result<Option<(u32, u32)>> {
     let pair = value.split_once(':').and_then(|(n, d)| Some((n.parse().ok()?, d.parse().ok()?)));
     match pair {
@@ -89,7 +89,7 @@ fn fraction(path: &Path, value: &str) -> Result<Option<(u32, u32)>> {
 
 fn colour_space(name: &str) -> Option<(Chroma, u32)> {
     let chroma = |planes, across, down| Chroma { planes, across, down };
-    // The three places of 4:2:0 chroma differ in a way that the luma does not feel.
+    // The three chroma positions of 4:2:0 do not affect the luma.
     let fixed = match name {
         "420" | "420jpeg" | "420paldv" | "420mpeg2" => Some(chroma(2, 2, 2)),
         "411" => Some(chroma(2, 4, 1)),

@@ -8,15 +8,15 @@ use crate::frame::{Frame, PixelFormat, Size};
 
 /// Writes a video frame by frame: gray as `mono`, colour as 4:4:4.
 ///
-/// Gray bytes are written as they are, so that a reader gets them back exactly. Colour is converted from the full range
-/// to the limited one of ITU-R BT.601: luma 16 to 235, chroma 16 to 240.
+/// Gray bytes are written unchanged, so that a reader gets them back exactly. Colour is converted from the full range
+/// to the limited range of ITU-R BT.601: luma 16 to 235, chroma 16 to 240.
 #[derive(Debug)]
 pub struct Y4mWriter<W> {
     writer: W,
     path: PathBuf,
     size: Size,
     format: PixelFormat,
-    /// A frame's planes, kept so that its memory is used again.
+    /// A frame's planes, kept to reuse the memory.
     planes: Vec<u8>,
 }
 
@@ -25,8 +25,8 @@ impl<W: Write> Y4mWriter<W> {
     /// messages. The writer should be buffered.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a size out of range, a rate with a 0, or a format other than [`PixelFormat::Gray8`] and
-    /// [`PixelFormat::Rgb8`]; [`Error::Io`].
+    /// [`Error::Parameter`] for a size out of range, a rate with a 0, or a format other than [`PixelFormat::Gray8`]
+    /// and [`PixelFormat::Rgb8`]; [`Error::Io`].
     pub fn new(
         mut writer: W,
         path: impl AsRef<Path>,
@@ -54,7 +54,7 @@ impl<W: Write> Y4mWriter<W> {
     /// Writes a frame.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] or [`Error::PixelFormat`] if the frame is not as announced, [`Error::Io`].
+    /// [`Error::SizeMismatch`] or [`Error::PixelFormat`] if the frame differs from the header, [`Error::Io`].
     pub fn write_frame(&mut self, frame: &Frame<'_>) -> Result<()> {
         if frame.size() != self.size {
             let what = "video frame".to_owned();
@@ -81,7 +81,7 @@ impl<W: Write> Y4mWriter<W> {
             .map_err(|source| Error::io(&self.path, source))
     }
 
-    /// Flushes, and gives the writer back.
+    /// Flushes, and returns the writer.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -91,7 +91,7 @@ impl<W: Write> Y4mWriter<W> {
     }
 }
 
-/// Offset, and the weights of red, green and blue between 0 and 1 (ITU-R BT.601, 8 bits).
+/// The offset, and the weights of red, green and blue between 0 and 1 (ITU-R BT.601, 8 bits).
 type Weights = (f32, [f32; 3]);
 const LUMA: Weights = (16.0, [65.481, 128.553, 24.966]);
 const BLUE: Weights = (128.0, [-37.797, -74.203, 112.0]);

@@ -1,23 +1,24 @@
-//! Flow as arrows over the picture that it belongs to.
+//! Flow as arrows over its image.
 
 use super::draw::{gray, line};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Frame, Image, Size};
 
-/// Stands out from gray pictures, dark and bright.
+/// A colour that stands out from gray images, dark and bright.
 const COLOUR: [u8; 3] = [255, 160, 0];
-/// A head is this part of the arrow's length, but never longer than [`MAX_HEAD`] pixels.
+/// The length of a head relative to its arrow, at most [`MAX_HEAD`] pixels.
 const HEAD: f64 = 0.3;
 const MAX_HEAD: f64 = 6.0;
 
-/// The frame in gray as [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8), with an arrow every `step` pixels in both directions.
+/// Draws the flow as arrows: the frame in gray as [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8), with an
+/// arrow every `step` pixels in both directions.
 ///
-/// An arrow begins at its pixel and is `gain` times as long as the displacement there. No arrow where the displacement
-/// is unknown; a dot where it is shorter than half a pixel after `gain`.
+/// An arrow starts at its pixel and is `gain` times as long as the displacement there. Where the displacement is
+/// unknown there is no arrow; where it is shorter than half a pixel after `gain`, a dot.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a `step` of 0 or a `gain` that is not a finite number over 0, [`Error::SizeMismatch`] if
-/// frame and flow differ in size, and as [`FlowField::validate`].
+/// frame and flow differ in size, and as in [`FlowField::validate`].
 pub fn arrows(frame: &Frame<'_>, flow: &FlowField, step: u32, gain: f32) -> Result<Image> {
     flow.validate()?;
     if flow.size != frame.size() {

@@ -1,44 +1,44 @@
-//! Many flights in one table.
+//! A campaign's table as an HTML page.
 
 use super::html::{escape, page, paragraph};
 use crate::text::counted;
 
-/// Width of an interval's drawing, pixels.
+/// The width of an interval's drawing, pixels.
 const BAR_PX: f64 = 150.0;
 
-/// Flights of one kind in numbers.
+/// The statistics of one setting's flights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignRow {
-    /// What they have in common, one for each of the table's labels: world, policy, sensor and the like.
+    /// The setting, one value for each of the table's labels: world, policy, sensor and the like.
     pub labels: Vec<String>,
-    /// How many there were.
+    /// The number of flights.
     pub flights: usize,
-    /// How many could not be flown, because of an error; they are in no other figure.
+    /// The number of flights that failed with an error; no other figure counts them.
     pub failed: usize,
-    /// How many reached their goal.
+    /// The number of flights that reached the goal.
     pub reached: usize,
-    /// How many crashed.
+    /// The number of flights that crashed.
     pub crashed: usize,
-    /// How many left their band of altitudes.
+    /// The number of flights that left the altitude band.
     pub left_band: usize,
-    /// How many took too long.
+    /// The number of flights that timed out.
     pub timed_out: usize,
-    /// Wilson's 95 % interval of the share that reached its goal, 0 to 1.
+    /// Wilson's 95 % confidence interval of the success rate, `[low, high]`, 0 to 1.
     pub interval: [f64; 2],
-    /// The least clearance of a flight, metres: its mean over the flights.
+    /// The least clearance of a flight, metres: the mean over the flights.
     pub least_clearance_mean_m: Option<f64>,
-    /// The same, the value that 5 % of the flights lie below.
+    /// The least clearance of a flight, metres: the 5th percentile over the flights.
     pub least_clearance_p5_m: Option<f64>,
-    /// Progress a metre flown, 0 to 1: the mean over the flights that reached their goal.
+    /// Path efficiency, progress per distance flown, 0 to 1: the mean over the flights that reached the goal.
     pub efficiency: Option<f64>,
-    /// All way flown a crash, metres; none where there was no crash.
+    /// Distance flown per crash, metres; `None` without a crash.
     pub between_crashes_m: Option<f64>,
 }
 
-/// A campaign as one page of HTML that needs nothing beside itself: a table with a row for each kind of flight.
+/// A campaign as a self-contained HTML page: a table with a row per setting.
 ///
-/// `about` is a line below the title, `labels` heads the columns of [`CampaignRow::labels`]. Rows whose first label is the
-/// same stand together where they follow each other.
+/// `about` is a line below the title, `labels` are the column heads of [`CampaignRow::labels`]. Consecutive rows with
+/// the same first label are grouped.
 pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[CampaignRow]) -> String {
     let head = |name: &&str| format!("<th class=\"label\" scope=\"col\">{}</th>", escape(name));
     let figures = [
@@ -46,13 +46,13 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
         "success",
         "95 % interval",
         "crashed",
-        "left altitudes",
-        "too long",
+        "left band",
+        "timed out",
         "failed",
         "clearance, m",
-        "of the worst 5 %, m",
+        "5th percentile, m",
         "efficiency, %",
-        "m a crash",
+        "m per crash",
     ];
     let heads: String = labels.iter().map(head).collect();
     let figures: String =
@@ -66,8 +66,8 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
     let flights: usize = rows.iter().map(|row| row.flights).sum();
     let body = format!(
         "{}<section>\n<h2>{}</h2>\n\
-         <p>The bar is the share that reached its goal, the line over it its 95 % interval (Wilson). Clearance is the least of \
-         a flight, in the mean; efficiency is progress a metre flown, of those that reached their goal.</p>\n\
+         <p>The bar is the share that reached the goal, the line over it the 95 % interval (Wilson). Clearance is the mean of \
+         each flight's least; efficiency is progress per metre flown, of the flights that reached the goal.</p>\n\
          {table}</section>\n",
         paragraph(about),
         counted(flights, "flight"),
@@ -101,7 +101,7 @@ fn cells(row: &CampaignRow, labels: usize) -> String {
     format!("<tr>{labels}{figures}</tr>\n")
 }
 
-/// A share and its interval as a bar with a whisker, and the interval in numbers.
+/// A share and its interval as a bar with a whisker, labelled with the interval in numbers.
 fn bar(share: f64, interval: [f64; 2]) -> String {
     let at = |value: f64| BAR_PX * if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
     let [low, high] = interval.map(at);

@@ -1,10 +1,10 @@
-//! Shapes with soft edges on a part of a picture.
+//! Antialiased shapes on a part of an image.
 
 use super::font;
 use crate::frame::Image;
 
-/// A part of a picture of [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8) that is drawn on. Places are in pixels
-/// from its upper left corner; what lies outside is not drawn.
+/// A part of an image of [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8) to draw on. Positions are in pixels
+/// from its upper left corner; what lies outside is clipped.
 pub(super) struct Canvas<'a> {
     image: &'a mut Image,
     corner: [usize; 2],
@@ -12,7 +12,7 @@ pub(super) struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// The part that begins at a corner, as far as the picture reaches.
+    /// The part that starts at a corner, clipped to the image.
     pub(super) fn new(image: &'a mut Image, corner: [usize; 2], size: [usize; 2]) -> Self {
         let whole = [image.size.width as usize, image.size.height as usize];
         let corner = std::array::from_fn(|i| corner[i].min(whole[i]));
@@ -25,13 +25,13 @@ impl<'a> Canvas<'a> {
         self.size.map(|side| side as f64)
     }
 
-    /// All of it in one colour.
+    /// Fills the canvas with one colour.
     pub(super) fn fill(&mut self, colour: [u8; 3]) {
         let [right, bottom] = self.size();
         self.paint([[0.0, 0.0], [right, bottom]], colour, |_| 1.0);
     }
 
-    /// A rectangle between two corners.
+    /// Draws a rectangle between two corners.
     pub(super) fn rectangle(&mut self, corners: [[f64; 2]; 2], colour: [u8; 3], opacity: f64) {
         let [[left, top], [right, bottom]] = corners;
         let inside = |[x, y]: [f64; 2]| {
@@ -41,7 +41,7 @@ impl<'a> Canvas<'a> {
         self.paint(corners, colour, inside);
     }
 
-    /// A line through points, `width` pixels wide.
+    /// Draws a line through points, `width` pixels wide.
     pub(super) fn stroke(&mut self, points: &[[f64; 2]], width: f64, colour: [u8; 3]) {
         let half = 0.5 * width;
         for ends in points.windows(2) {
@@ -50,7 +50,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// A disc.
+    /// Draws a disc.
     pub(super) fn disc(&mut self, centre: [f64; 2], radius: f64, colour: [u8; 3], opacity: f64) {
         let covered = |[x, y]: [f64; 2]| {
             opacity * (radius + 0.5 - (x - centre[0]).hypot(y - centre[1])).clamp(0.0, 1.0)
@@ -58,7 +58,7 @@ impl<'a> Canvas<'a> {
         self.paint(around(&[centre], radius), colour, covered);
     }
 
-    /// A circle, `width` pixels wide.
+    /// Draws a circle, `width` pixels wide.
     pub(super) fn ring(&mut self, centre: [f64; 2], radius: f64, width: f64, colour: [u8; 3]) {
         let covered = |[x, y]: [f64; 2]| {
             let off = ((x - centre[0]).hypot(y - centre[1]) - radius).abs();
@@ -67,7 +67,7 @@ impl<'a> Canvas<'a> {
         self.paint(around(&[centre], radius + width), colour, covered);
     }
 
-    /// The inside of a closed line.
+    /// Fills a closed polygon.
     pub(super) fn polygon(&mut self, points: &[[f64; 2]], colour: [u8; 3], opacity: f64) {
         let sides = || points.iter().zip(points.iter().cycle().skip(1));
         let covered = |place: [f64; 2]| {
@@ -82,18 +82,18 @@ impl<'a> Canvas<'a> {
         self.paint(around(points, 0.0), colour, covered);
     }
 
-    /// Text on black, its first dot at a place.
+    /// Writes text on black, with its first dot at a position.
     pub(super) fn text(&mut self, at: [f64; 2], text: &str, colour: [u8; 3], scale: usize) {
         let at = std::array::from_fn(|i| at[i] + self.corner[i] as f64);
         font::text(self.image, at, text, colour, scale);
     }
 
-    /// Blends a colour in by how much each pixel between two corners is covered.
+    /// Blends a colour in by the coverage of each pixel between two corners.
     fn paint(&mut self, corners: [[f64; 2]; 2], colour: [u8; 3], covered: impl Fn([f64; 2]) -> f64) {
         let width = self.image.size.width as usize;
         let range = |i: usize| {
             let [a, b] = [corners[0][i].min(corners[1][i]) - 1.0, corners[0][i].max(corners[1][i]) + 2.0];
-            // What is not a number becomes 0.
+            // NaN becomes 0.
             (a.max(0.0) as usize).min(self.size[i])..(b.max(0.0) as usize).min(self.size[i])
         };
         for y in range(1) {
@@ -111,7 +111,7 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// The corners of a rectangle around points.
+/// The bounding rectangle of points, with a margin.
 fn around(points: &[[f64; 2]], margin: f64) -> [[f64; 2]; 2] {
     let fold = |start: f64, sign: f64, of: fn(f64, f64) -> f64| {
         std::array::from_fn(|i| points.iter().map(|point| point[i]).fold(start, of) + sign * margin)
@@ -154,7 +154,7 @@ mod tests {
         let area = sum(&drawn(|canvas| canvas.polygon(&triangle, [255; 3], 1.0)));
         assert!((area - 32.0).abs() < 1.0, "{area}");
         let line = sum(&drawn(|canvas| canvas.stroke(&[[2.0, 5.0], [10.0, 5.0]], 2.0, [255; 3])));
-        // Eight pixels of two rows, and the round ends.
+        // Eight pixels in two rows, and the round ends.
         assert!((line - 16.0 - std::f64::consts::PI).abs() < 1.0, "{line}");
         let half = sum(&drawn(|canvas| canvas.rectangle([[2.0, 2.0], [6.0, 5.0]], [255; 3], 0.5)));
         assert!((half - 6.0).abs() < 0.1, "{half}");

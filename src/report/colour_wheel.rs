@@ -5,20 +5,20 @@ use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, PixelFormat};
 
 const COLOURS: usize = 55;
-/// How the wheel is divided: steps from red to yellow, yellow to green, green to cyan, cyan to blue, blue to magenta
-/// and magenta to red. They are chosen so that the steps look alike.
+/// The wheel's sections: steps from red to yellow, yellow to green, green to cyan, cyan to blue, blue to magenta and
+/// magenta to red, chosen so that the steps look alike.
 const STEPS: [usize; 6] = [15, 6, 4, 11, 13, 6];
 const CORNERS: [[usize; 3]; 7] =
     [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255], [255, 0, 0]];
 
-/// A flow field as a picture of [`PixelFormat::Rgb8`], and the length in pixels that is shown in full colour.
+/// Draws a flow field as colours: an image of [`PixelFormat::Rgb8`], and the length in pixels shown in full colour.
 ///
-/// No motion is white, `scale` pixels are fully saturated, longer ones are darkened, and what is unknown is black.
-/// Without a `scale`, the largest known length is taken (1 px if nothing moves).
+/// No motion is white, `scale` pixels are fully saturated, longer displacements are darkened, and unknown ones are
+/// black. Without a `scale`, the largest known length is used (1 px if nothing moves).
 ///
 /// # Errors
-/// [`Error::Parameter`] for a `scale` that is not a finite number over 0; [`Error::Parameter`] or [`Error::Length`] if
-/// the field contradicts itself.
+/// [`Error::Parameter`] for a `scale` that is not a finite number over 0; [`Error::Parameter`] or [`Error::Length`]
+/// if size and data contradict each other.
 pub fn colour_wheel(flow: &FlowField, scale: Option<f32>) -> Result<(Image, f32)> {
     flow.validate()?;
     let scale = match scale {
@@ -44,7 +44,7 @@ fn wheel() -> [[f32; 3]; COLOURS] {
         let (from, to) = (CORNERS[part], CORNERS[part + 1]);
         for i in 0..steps {
             for channel in 0..3 {
-                // Whole numbers first, as in the original, whose division drops the remainder.
+                // Integer division first, as in the original, which drops the remainder.
                 let rise = 255 * i / steps;
                 let value = match (from[channel], to[channel]) {
                     (0, 255) => rise,
@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(wheel[54].map(|c| (c * 255.0).round()), [255.0, 0.0, 43.0]);
     }
 
-    /// To the right is red, down is yellow, to the left is cyan to blue, up is violet, as in the key of the paper.
+    /// Right is red, down is yellow, left is cyan to blue, up is violet, as in the paper's key.
     #[test]
     fn directions_have_the_colours_of_the_paper() {
         let (colours, scale) = show(vec![[2.0, 0.0], [0.0, 2.0], [-2.0, 0.0], [0.0, -2.0], [0.0; 2]], None);

@@ -1,12 +1,12 @@
-//! Divergence and nearness in colours.
+//! Divergence and nearness as colours.
 
 use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Plane};
 
-/// The divergence that is shown in full colour, 1/s: that of a wall ahead that is met in a second.
+/// The divergence shown in full colour, 1/s: that of a wall ahead one second before contact.
 pub const FULL_DIVERGENCE_HZ: f64 = 2.0;
 
-/// From the lowest to the highest: RdBu of C. Brewer's ColorBrewer (colorbrewer2.org), turned round, its middle white.
+/// From the lowest to the highest: RdBu of C. Brewer's ColorBrewer (colorbrewer2.org), reversed, with a white centre.
 const COLOURS: [[u8; 3]; 11] = [
     [5, 48, 97],
     [33, 102, 172],
@@ -20,14 +20,14 @@ const COLOURS: [[u8; 3]; 11] = [
     [178, 24, 43],
     [103, 0, 31],
 ];
-/// Of what is not known.
+/// The colour of unknown values.
 const UNKNOWN: [u8; 3] = [128, 128, 128];
 
-/// A plane in colours, as a picture of [`PixelFormat::Rgb8`]: 0 is white, `full` and above dark red, what is as far below 0
-/// dark blue, and what is not a number gray.
+/// A plane as colours, an image of [`PixelFormat::Rgb8`]: 0 is white, `full` and above dark red, −`full` and below
+/// dark blue, NaN gray.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a `full` that is not a finite number over 0; what [`Plane::validate`] finds.
+/// [`Error::Parameter`] for a `full` that is not a finite number over 0; the errors of [`Plane::validate`].
 pub fn diverging(plane: &Plane, full: f64) -> Result<Image> {
     plane.validate()?;
     if !(full > 0.0 && full.is_finite()) {
@@ -37,7 +37,7 @@ pub fn diverging(plane: &Plane, full: f64) -> Result<Image> {
     Ok(Image { size: plane.size, format: PixelFormat::Rgb8, data })
 }
 
-/// The colour of −1 to 1.
+/// The colour of a value from −1 to 1.
 pub(super) fn colour(share: f64) -> [u8; 3] {
     if share.is_nan() {
         return UNKNOWN;
@@ -70,7 +70,7 @@ mod tests {
     fn zero_is_white_and_what_comes_nearer_is_red() {
         let found = colours(vec![0.0, 4.0, -4.0, 1e9, f32::NEG_INFINITY, f32::NAN, 2.0, 0.4], 4.0);
         let (red, blue) = ([103, 0, 31], [5, 48, 97]);
-        // Half of the way is between two colours; a tenth of it half-way to the first one.
+        // 0.5 lies between two colours, a tenth of the way to the first one.
         let half = [229, 131, 104];
         assert_eq!(found, [[255; 3], red, blue, red, blue, UNKNOWN, half, [254, 237, 227]]);
     }

@@ -1,4 +1,4 @@
-//! The divergence that was measured beside the true one.
+//! The measured divergence beside the true one.
 
 use super::canvas::Canvas;
 use super::colours::{DIM, FRAME, TEXT};
@@ -7,16 +7,16 @@ use crate::error::{Error, Result};
 use crate::frame::{Image, PixelFormat, Size};
 use crate::sim::flight::Divergences;
 
-/// Pixels between two pictures, and of the height of the scale below them.
+/// The gap between the two images, and the height of the scale below them, in pixels.
 const GAP: usize = 8;
 const SCALE: usize = 30;
 
-/// The measured divergence beside the true one, [`FULL_DIVERGENCE_HZ`] in full colour: each cell `side` pixels wide, and
-/// the scale below.
+/// Draws the measured divergence beside the true one, with [`FULL_DIVERGENCE_HZ`] in full colour: each cell `side`
+/// pixels wide, with a colour scale below.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a `side` that is not 1 to 64, or a picture that would be larger than pictures may be;
-/// [`Error::SizeMismatch`] for planes of two sizes; what [`Plane::validate`] finds.
+/// [`Error::Parameter`] for a `side` that is not 1 to 64, or an image above the largest size; [`Error::SizeMismatch`]
+/// for planes of different sizes; the errors of [`Plane::validate`].
 pub fn divergence_strip(divergences: &Divergences, side: u32, time_s: f64) -> Result<Image> {
     let Divergences { measured_hz, true_hz } = divergences;
     let cells = measured_hz.size;

@@ -1,8 +1,8 @@
-//! Gray pictures to draw on, and lines.
+//! Gray images to draw on, and lines.
 
 use crate::frame::{Frame, Image, PixelFormat, Size};
 
-/// The frame's brightness, a byte a pixel.
+/// The frame's luma, one byte per pixel, row by row.
 pub(super) fn luma(frame: &Frame<'_>) -> Vec<u8> {
     let size = frame.size();
     let mut data = Vec::with_capacity(size.pixels());
@@ -24,7 +24,7 @@ pub(super) fn gray(frame: &Frame<'_>) -> Image {
     Image { size: frame.size(), format: PixelFormat::Rgb8, data }
 }
 
-/// A line in a picture of [`PixelFormat::Rgb8`], as far as it lies inside.
+/// Draws a line in an image of [`PixelFormat::Rgb8`], clipped to it.
 pub(super) fn line(image: &mut Image, from: [f64; 2], to: [f64; 2], colour: [u8; 3]) {
     let Some([from, to]) = clip(image.size, from, to) else { return };
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -39,8 +39,8 @@ pub(super) fn line(image: &mut Image, from: [f64; 2], to: [f64; 2], colour: [u8;
     }
 }
 
-/// The part of a line that lies in the picture (Liang and Barsky 1984). Without it, a displacement of a million pixels
-/// would be walked pixel by pixel.
+/// Clips a line to the image (Liang and Barsky 1984). Without it, a displacement of a million pixels would be drawn
+/// pixel by pixel.
 fn clip(size: Size, from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let most = [f64::from(size.width - 1), f64::from(size.height - 1)];
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -60,7 +60,7 @@ fn clip(size: Size, from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     if enter > leave {
         return None;
     }
-    // Rounding can leave the picture by a hair.
+    // Rounding can leave the image slightly.
     let at = |part: f64| std::array::from_fn(|i| (from[i] + part * (to[i] - from[i])).clamp(0.0, most[i]));
     Some([at(enter), at(leave)])
 }

@@ -1,30 +1,30 @@
-//! What a surface looks like from straight above.
+//! Surfaces as seen from straight above.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::sim::Form;
 
-/// Places around a lid of a cylinder that does not stand upright.
+/// The number of points around a lid of a cylinder that is not upright.
 const AROUND: u32 = 16;
-/// A plane that is steeper than this is drawn as the line in which it meets a level; one that is not is a ground.
+/// A steeper plane is drawn as its line at a given height; any other is ground.
 const STEEP: f64 = 0.2;
-/// Half the length of the part that is drawn of a line without end, metres.
+/// Half the length drawn of an infinite line, metres.
 const FAR_M: f64 = 1e4;
 
-/// A surface as seen from straight above, in metres north and east.
+/// The outline of a surface as seen from straight above, in metres north and east.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Footprint {
     /// An upright cylinder.
     Circle(DVec2, f64),
     /// An upright wall.
     Line([DVec2; 2]),
-    /// Anything else that has an end: its corners in order.
+    /// Any other bounded surface: its corners in order.
     Polygon(Vec<DVec2>),
 }
 
 impl Footprint {
-    /// Of a surface in a world whose z axis leads down; none of a ground. Of an upright plane it is where that meets the
-    /// level of a height.
+    /// The footprint of a surface in a world whose z axis points down; `None` for ground. For a steep plane it is its
+    /// line at `height_m`.
     pub(super) fn of(form: &Form, height_m: f64) -> Option<Self> {
         match *form {
             Form::Plane { point_world, normal_world } => {
@@ -61,7 +61,7 @@ impl Footprint {
         }
     }
 
-    /// Whether it comes nearer to a place than a distance. May be wrong in saying yes.
+    /// Whether it may be nearer to a point than a distance. Conservative: it may return true wrongly.
     pub(super) fn is_near(&self, place: DVec2, distance_m: f64) -> bool {
         match self {
             Self::Circle(centre, radius_m) => centre.distance(place) <= distance_m + radius_m,
@@ -78,8 +78,8 @@ impl Footprint {
         }
     }
 
-    /// The smallest convex polygon around points (A. M. Andrew, Another efficient algorithm for convex hulls in two
-    /// dimensions, Information Processing Letters 9, 1979); a line if all of them lie on one.
+    /// The convex hull of points (A. M. Andrew, Another efficient algorithm for convex hulls in two dimensions,
+    /// Information Processing Letters 9, 1979); a line if all of them are collinear.
     fn hull(points: &[DVec3]) -> Self {
         let mut sorted: Vec<DVec2> = points.iter().map(|point| point.truncate()).collect();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -150,7 +150,7 @@ mod tests {
         };
         assert_eq!(corners.len(), 4);
         assert!((area(&corners) - 6.0).abs() < 1e-9, "{corners:?}");
-        // A log of 2 m by 1 m: its outline is that of a rectangle.
+        // A log of 2 m by 1 m: its outline is a rectangle.
         let Some(Footprint::Polygon(log)) = of(Surface::cylinder(DVec3::ZERO, DVec3::X * 2.0, 0.5)) else {
             panic!("a lying cylinder is a polygon")
         };
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn an_upright_plane_is_the_line_at_the_level_of_the_flight() {
-        // It leans away to the north with height: 10 m up it is met 10 m further north.
+        // It leans to the north with height: at 10 m it is 10 m further north.
         let Some(Footprint::Line(ends)) =
             of(Surface::plane(DVec3::new(50.0, 0.0, 0.0), DVec3::new(-1.0, 0.0, -1.0)))
         else {

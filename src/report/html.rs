@@ -1,11 +1,11 @@
-//! Pages that need nothing beside themselves.
+//! Self-contained HTML pages.
 
 use std::fmt::Display;
 
-/// What every page looks like, in light and in dark.
+/// The style of all pages, light and dark.
 const STYLE: &str = include_str!("page.css");
 
-/// Text as it may stand in HTML and SVG, also in an attribute.
+/// Escapes text for HTML and SVG, including attributes.
 pub(super) fn escape(text: impl Display) -> String {
     let mut escaped = String::new();
     for character in text.to_string().chars() {
@@ -21,7 +21,7 @@ pub(super) fn escape(text: impl Display) -> String {
     escaped
 }
 
-/// A page of a title, which is escaped here, and a body, which is not.
+/// A page with a title, which is escaped here, and a body, which is not.
 pub(super) fn page(title: &str, body: &str) -> String {
     let title = escape(title);
     format!(
@@ -31,24 +31,24 @@ pub(super) fn page(title: &str, body: &str) -> String {
     )
 }
 
-/// A figure to be seen at once: what it is, and its value.
+/// A prominent figure: its name and value.
 pub(super) fn tile(name: &str, value: impl Display, kind: &str) -> String {
     let (name, value, kind) = (escape(name), escape(value), escape(kind));
     format!("<div class=\"tile {kind}\"><span>{name}</span><b>{value}</b></div>\n")
 }
 
-/// A line of text, if there is any.
+/// A paragraph of text; empty if there is none.
 pub(super) fn paragraph(text: impl Display) -> String {
     let text = escape(text);
     if text.is_empty() { text } else { format!("<p>{text}</p>\n") }
 }
 
-/// A part of a page: a heading, a line about it, and what stands below, which is not escaped.
+/// A section: a heading, a line about it, and the content, which is not escaped.
 pub(super) fn section(heading: &str, about: &str, content: &str) -> String {
     format!("<section>\n<h2>{}</h2>\n{}{content}</section>\n", escape(heading), paragraph(about))
 }
 
-/// Names and values, all escaped here.
+/// A table of names and values, all escaped here.
 pub(super) fn figures(rows: &[(&str, String)]) -> String {
     let row = |(name, value): &(&str, String)| {
         format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value))
@@ -56,7 +56,8 @@ pub(super) fn figures(rows: &[(&str, String)]) -> String {
     format!("<table class=\"figures\">\n{}</table>\n", rows.iter().map(row).collect::<String>())
 }
 
-/// Whether every element is closed in its turn, and every `&` begins an entity: what a browser would repair in silence.
+/// Checks that every element is closed in order, and that every `&` starts an entity: errors that a browser would
+/// repair silently.
 #[cfg(test)]
 pub(super) fn check(page: &str) -> Result<(), String> {
     let mut open: Vec<&str> = Vec::new();

@@ -1,5 +1,5 @@
-//! Results to look at: flow in colours and arrows, cues over the picture, and pages. The feature `report` turns this module
-//! on; what shows simulated flights ([`flight`], [`divergence_strip`]) needs the feature `sim`, too.
+//! Visual reports: flow as colours and arrows, cues as overlays, and HTML pages. Enabled by the feature `report`;
+//! reports of simulated flights ([`flight`], [`divergence_strip`]) also need the feature `sim`.
 
 mod arrows;
 mod campaign;

@@ -1,4 +1,4 @@
-//! A frame with what was made of it drawn over it.
+//! Cues as an overlay on their frames.
 
 use glam::DVec3;
 
@@ -13,24 +13,24 @@ use crate::frame::{FlowField, Frame, Image, PixelFormat};
 use crate::pipeline::Cue;
 use crate::sphere::{Grid, Threat, bearing};
 
-/// A displacement of this part of the picture's width has the wheel's full colour, so that colours can be compared from
-/// frame to frame.
+/// The displacement in full colour, relative to the image's width: constant, so that colours are comparable between
+/// frames.
 const FULL_COLOUR: f32 = 0.01;
-/// How much of the gray picture the fullest colour leaves.
+/// The opacity of the fullest colour over the gray image.
 const OPAQUE: f32 = 0.6;
 const HEADING: [u8; 3] = [255; 3];
 const HORIZON: [u8; 3] = [0, 220, 255];
 const INVALID: [u8; 3] = [200, 0, 0];
-/// Of pixels that no sector has.
+/// The sector index of pixels in no sector.
 const NO_SECTOR: u32 = u32::MAX;
 
-/// Draws cues over the pictures of the ideal camera, of which the flow is computed.
+/// Draws cues over the undistorted images, in which the flow is computed.
 ///
-/// The picture is gray. Over it lie the flow as colours ([`colour_wheel`], from the frame before to this one; what does
-/// not move stays gray); a frame around each sector, red if it is met within 1 s, orange within 2 s, yellow within 4 s,
-/// green within 8 s; a box around the threat, with its time; the direction of motion as a cross; the horizon, where it is
-/// known ([`Overlay::set_up`]); the frame's time at the lower left. A picture whose cue is invalid has a red border, and
-/// nothing else is drawn.
+/// The image is gray. The overlay shows the flow as colours ([`colour_wheel`], from the previous frame to this one;
+/// pixels without motion stay gray); an outline around each sector by its time to contact, red within 1 s, orange
+/// within 2 s, yellow within 4 s, green within 8 s; a box around the threat, with its time; the direction of motion
+/// as a cross; the horizon, if it is known ([`Overlay::set_up`]); the frame's time at the lower left. An image whose
+/// cue is invalid has a red border, and nothing else is drawn.
 #[derive(Debug)]
 pub struct Overlay {
     ideal: Camera,
@@ -40,7 +40,7 @@ pub struct Overlay {
     image: Image,
 }
 
-/// Which sector each pixel lies in.
+/// The sector of each pixel.
 #[derive(Debug, Default)]
 struct Sectors {
     grid: Option<Grid>,
@@ -48,7 +48,7 @@ struct Sectors {
 }
 
 impl Overlay {
-    /// For frames of one camera whose flow is computed in the pictures of another one.
+    /// An overlay for frames of the camera `raw` whose flow is computed in images of the camera `ideal`.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a camera that is out of range.
@@ -61,14 +61,14 @@ impl Overlay {
         Ok(Self { ideal: *ideal, picture, sectors: Sectors::default(), up_camera: None, image })
     }
 
-    /// Says which way is up in the camera's frame, at any length, from the frame that is drawn next on; none where that is
-    /// not known, and no horizon is drawn.
+    /// Sets the up direction in the camera's frame, of any length, from the next drawn frame on; `None` if it is
+    /// unknown, and then no horizon is drawn.
     pub fn set_up(&mut self, up_camera: Option<DVec3>) {
         self.up_camera = up_camera;
     }
 
-    /// The frame with its cue over it, as [`PixelFormat::Rgb8`] in the ideal camera's size. The flow is drawn if the cue
-    /// has it ([`Config::read_flow`](crate::Config::read_flow)).
+    /// Draws the frame with its cue, as [`PixelFormat::Rgb8`] in the ideal camera's size. The flow is drawn if the
+    /// cue contains it ([`Config::read_flow`](crate::Config::read_flow)).
     ///
     /// # Errors
     /// [`Error::SizeMismatch`] for a frame or a flow of another size.
@@ -103,7 +103,7 @@ impl Overlay {
             return Err(Error::SizeMismatch { what, found: flow.size, expected: self.ideal.size });
         }
         let scale = (FULL_COLOUR * self.ideal.size.width as f32).max(1.0);
-        // The cue's flow leads back to the frame before.
+        // The cue's flow points back to the previous frame.
         let forward =
             FlowField { size: flow.size, data: flow.data.iter().map(|uv| uv.map(|c| -c)).collect() };
         let (colours, _) = colour_wheel(&forward, Some(scale))?;
@@ -117,7 +117,7 @@ impl Overlay {
         Ok(())
     }
 
-    /// Each sector's own frame, a pixel wide, in the colour of its time.
+    /// Draws each sector's outline, one pixel wide, in the colour of its time to contact.
     fn outline(&mut self, cue: &Cue<'_>) {
         let grid = &cue.sectors.grid;
         if self.sectors.grid != Some(*grid) {
@@ -146,7 +146,7 @@ impl Overlay {
         }
     }
 
-    /// A box about as large as the threat, with its time above it.
+    /// Draws a box of about the threat's size, with its time above it.
     fn threat(&mut self, threat: &Threat, grid: &Grid, scale: usize) {
         let colour = if threat.alarm { TIMES[0].1 } else { TIMES[1].1 };
         let half = grid.pitch_rad().map(|pitch| 0.5 * pitch * (threat.sectors as f64).sqrt());
@@ -166,19 +166,19 @@ impl Overlay {
         text(&mut self.image, above, &format!("{:.1}s", threat.time_s), colour, scale);
     }
 
-    /// What is as high as the camera, far away: the places (x, y, 1) that are square to what is up.
+    /// Draws the horizon: the points (x, y, 1) perpendicular to the up direction.
     fn horizon(&mut self, up: DVec3) {
         let Camera { size, f_u, f_v, u_0, v_0, .. } = self.ideal;
         let (a, b) = (up.x / f_u, up.y / f_v);
         let c = up.z - a * u_0 - b * v_0;
         let last = [size.width, size.height].map(|side| f64::from(side - 1));
-        // a u + b v + c = 0, from one side of the picture to the other.
+        // a u + b v + c = 0, from one side of the image to the other.
         let steep = a.abs() > b.abs();
         let ends = match steep {
             true => [0.0, last[1]].map(|v| [-(b * v + c) / a, v]),
             false => [0.0, last[0]].map(|u| [u, -(a * u + c) / b]),
         };
-        // Straight up or down there is none.
+        // Looking straight up or down there is none.
         if ends.as_flattened().iter().all(|end| end.is_finite()) {
             for shift in [0.0, 1.0] {
                 let moved = ends.map(|[u, v]| if steep { [u + shift, v] } else { [u, v + shift] });
@@ -288,13 +288,13 @@ mod tests {
         );
         let beside = at(&image, right + 1, 20);
         assert!(beside[0] < 90 && beside[0] == beside[1], "{beside:?}");
-        // Nothing moves and nothing is near in the middle of a sector.
+        // Without motion and nearness the centre of a sector stays gray.
         assert_eq!((at(&image, right / 2, 15), at(&image, 90, 60)), (GRAY, GRAY));
     }
 
     #[test]
     fn the_flow_is_shown_from_the_frame_before() {
-        // Back to the left: it moved to the right, which is red.
+        // The flow points back to the left: the motion is to the right, which is red.
         let image = drawn(|_| {}, [-2.0, 0.0]);
         let [r, g, b] = at(&image, 90, 60);
         assert!(r > 150 && g < 80 && b < 90, "{r} {g} {b}");
@@ -331,7 +331,7 @@ mod tests {
             (0..150).find(|y| at(&image, x, *y) == HORIZON)
         };
         assert_eq!(row(None, 100), None);
-        // The nose is up by atan 0.2, and what is level is 20 px further down; nothing is level right above.
+        // The nose is up by atan 0.2, which lowers the horizon by 20 px; right above nothing is level.
         assert_eq!(row(Some(DVec3::new(0.0, -1.0, 0.2)), 100), Some(95));
         assert_eq!(row(Some(DVec3::NEG_Z), 100), None);
         // The right wing is down, and the horizon rises to the right: by 45 degrees here.

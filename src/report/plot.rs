@@ -2,27 +2,27 @@
 
 use super::html::escape;
 
-/// Of the whole drawing.
+/// The width of the whole drawing.
 const WIDTH: f64 = 1000.0;
-/// Room for the labels of the axes and above the plot for its title.
+/// Room for the labels of the axes, and above the plot for its title.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 24.0;
 const BOTTOM: f64 = 24.0;
 
-/// A curve. It is interrupted where a value is not a number.
+/// A curve. It is interrupted at NaN.
 pub(super) struct Curve<'a> {
     pub(super) name: &'a str,
-    /// The class of its colour in the page's style, `c0` to `c4`.
+    /// The CSS class of its colour, `c0` to `c4`.
     pub(super) class: &'static str,
     pub(super) points: Vec<[f64; 2]>,
 }
 
-/// A part of the horizontal axis that is shaded.
+/// A shaded part of the horizontal axis.
 pub(super) struct Span {
     pub(super) from: f64,
     pub(super) to: f64,
-    /// The class of its colour: `good`, `warn`, `bad` or `fault`.
+    /// The CSS class of its colour: `good`, `warn`, `bad` or `fault`.
     pub(super) class: &'static str,
     pub(super) name: String,
 }
@@ -30,13 +30,13 @@ pub(super) struct Span {
 /// Curves over a common axis.
 pub(super) struct Plot<'a> {
     pub(super) title: &'a str,
-    /// What the vertical axis is in.
+    /// The unit of the vertical axis.
     pub(super) unit: &'a str,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
     pub(super) height: f64,
     pub(super) curves: Vec<Curve<'a>>,
-    /// Horizontal lines with their names.
+    /// Named horizontal lines.
     pub(super) levels: Vec<(f64, &'a str)>,
     pub(super) spans: Vec<Span>,
 }
@@ -82,7 +82,7 @@ impl Plot<'_> {
         let mut svg = format!("<text class=\"title\" x=\"{LEFT}\" y=\"14\">{}</text>\n", escape(&title));
         let mut x = WIDTH - RIGHT;
         for curve in self.curves.iter().rev().filter(|_| self.curves.len() > 1) {
-            // About as wide as text of this size is.
+            // About the width of text of this size.
             x -= 6.2 * curve.name.chars().count() as f64;
             svg += &format!(
                 "<text x=\"{x:.1}\" y=\"14\">{}</text>\
@@ -98,18 +98,18 @@ impl Plot<'_> {
     }
 }
 
-/// Where values lie in a drawing.
+/// The plot area: where values lie in a drawing.
 pub(super) struct PlotArea {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    /// Of the whole drawing.
+    /// The height of the whole drawing.
     pub(super) height: f64,
 }
 
 impl PlotArea {
     /// Width of the part between the axes.
     pub(super) const INNER: f64 = WIDTH - LEFT - RIGHT;
-    /// What a drawing is higher than that part.
+    /// The height of everything above and below the plot area.
     pub(super) const ABOVE_AND_BELOW: f64 = TOP + BOTTOM;
 
     pub(super) fn begin(&self, name: &str) -> String {
@@ -158,7 +158,7 @@ impl PlotArea {
         )
     }
 
-    /// A line through points, interrupted where one is not a number, clamped to the bounds of the vertical axis.
+    /// A line through points, interrupted at NaN, clamped to the bounds of the vertical axis.
     pub(super) fn curve(&self, points: &[[f64; 2]], class: &str) -> String {
         let mut path = String::new();
         let mut pen = 'M';
@@ -175,7 +175,7 @@ impl PlotArea {
     }
 }
 
-/// Round values in a range: about so many, 1, 2 or 5 times a power of ten apart.
+/// About `count` round values in a range, 1, 2 or 5 times a power of ten apart.
 pub(super) fn ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
     let rough = (high - low) / count.max(1) as f64;
     if !(rough > 0.0 && rough.is_finite()) {
@@ -188,7 +188,7 @@ pub(super) fn ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A range that holds all finite values with some room, also where they are all the same; `least` at its narrowest.
+/// A range with some margin around all finite values; at least `least` wide.
 pub(super) fn range(values: impl Iterator<Item = f64>, least: f64) -> [f64; 2] {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for value in values.filter(|value| value.is_finite()) {
@@ -202,9 +202,9 @@ pub(super) fn range(values: impl Iterator<Item = f64>, least: f64) -> [f64; 2] {
     [low - room - short, high + room + short]
 }
 
-/// A tick's label: without digits that say nothing.
+/// A tick's label, without superfluous digits.
 fn number(value: f64) -> String {
-    // What a step of 0.1 leaves of 0.3, and a zero of either sign.
+    // The rounding error of multiples of 0.1, and negative zero.
     let rounded = (value * 1e6).round() / 1e6 + 0.0;
     format!("{rounded}")
 }

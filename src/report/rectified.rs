@@ -1,15 +1,15 @@
-//! A frame as the ideal camera would have taken it, for the eye.
+//! Undistorted frames, for display.
 
 use super::draw::luma;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Image, Size};
 
-/// Where each pixel of the ideal picture is read in the raw frame.
+/// The map from each pixel of the ideal image to its position in the raw frame.
 #[derive(Debug)]
 pub(super) struct Rectified {
     raw: Size,
-    /// NaN where the raw frame does not show it.
+    /// One position `[column, row]` per pixel, row by row; NaN where the raw frame does not show it.
     places: Vec<[f32; 2]>,
 }
 
@@ -25,8 +25,8 @@ impl Rectified {
         Self { raw: raw.size, places }
     }
 
-    /// Fills a picture of [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8) with the frame in gray; black where it
-    /// shows nothing.
+    /// Draws the undistorted frame in gray to an image of [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8);
+    /// black where the raw frame does not show it.
     pub(super) fn draw(&self, frame: &Frame<'_>, image: &mut Image) -> Result<()> {
         if frame.size() != self.raw {
             let what = "frame".to_owned();

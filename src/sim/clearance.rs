@@ -1,4 +1,4 @@
-//! How far a point is from what it could run into.
+//! The distance from a point to the surfaces of a world.
 
 use glam::{DVec2, DVec3};
 
@@ -6,8 +6,8 @@ use super::surface::Geometry;
 use super::{Surface, World};
 
 impl Surface {
-    /// The distance from a point to the surface, metres: negative inside a cylinder or a box and behind a plane, whose
-    /// normal points to where there is room. A rectangle is thin and has no inside.
+    /// The distance from a point to the surface, metres: negative inside a cylinder or a box and behind a plane,
+    /// whose normal points to the free side. A rectangle is thin and has no inside.
     pub fn distance_m(&self, point_world: DVec3) -> f64 {
         let p = self.local_from_world * (point_world - self.origin_world);
         match self.shape {
@@ -28,21 +28,21 @@ impl Surface {
     }
 }
 
-/// The signed distance to a body that is bounded at right angles, from those to its bounds.
+/// The signed distance to a box-like body, from the signed distances to its bounds.
 fn solid(beyond: DVec3) -> f64 {
     beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
 }
 
 impl World {
-    /// The distance from a point to the nearest surface, metres: negative inside a solid, as
-    /// [`Surface::distance_m`]. Infinite in an empty world, and not a number for a point that is not finite.
+    /// The distance from a point to the nearest surface, metres: negative inside a solid, as in
+    /// [`Surface::distance_m`]. Infinite in an empty world, and NaN for a point that is not finite.
     pub fn clearance_m(&self, point_world: DVec3) -> f64 {
         if !point_world.is_finite() {
             return f64::NAN;
         }
         let mut nearest_m = f64::INFINITY;
         for surface in &self.surfaces {
-            // Most are too far away to be looked at closely.
+            // Skip surfaces whose bounding sphere is too far away.
             if point_world.distance(surface.origin_world) - surface.reach_m < nearest_m {
                 nearest_m = nearest_m.min(surface.distance_m(point_world));
             }
@@ -73,7 +73,7 @@ mod tests {
         ]
     }
 
-    /// Points on a surface, and how far any of it may be from the nearest of them.
+    /// Points on a surface, and the largest distance of any of its points from the nearest of them.
     fn sampled(form: Form) -> (Vec<DVec3>, f64) {
         let unit = |i: i32| f64::from(i) / f64::from(STEPS);
         let grid = || (0..=STEPS).flat_map(move |i| (0..=STEPS).map(move |j| (unit(i), unit(j))));
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// By its definition.
+    /// Whether a point is inside, by definition.
     fn is_inside(form: Form, point: DVec3) -> bool {
         match form {
             Form::Plane { point_world, normal_world } => (point - point_world).dot(normal_world) < 0.0,
@@ -176,7 +176,7 @@ mod tests {
                 let (samples, step_m) = sampled(surface.form());
                 let nearest = samples.iter().map(|sample| sample.distance(point)).fold(f64::INFINITY, f64::min);
                 let found = surface.distance_m(point);
-                // The nearest place is within a step of a sample, and no sample is nearer than it.
+                // The nearest point is within a step of a sample, and no sample is nearer.
                 prop_assert!(found.abs() <= nearest + 1e-12, "{found} {nearest}");
                 prop_assert!(nearest <= (found * found + step_m * step_m).sqrt() + step_m * step_m, "{found} {nearest}");
                 prop_assert_eq!(found < 0.0, is_inside(surface.form(), point));
@@ -202,7 +202,7 @@ mod tests {
                     (more - less) / 2e-5
                 });
                 let nearest = point - DVec3::from(slope) * distance_m;
-                // The second-order error of the slope, 1e-10 over the distance squared, over the way there.
+                // The second-order error of the slope, 1e-10 over the distance squared, times the distance.
                 prop_assert!(surface.distance_m(nearest).abs() <= 1e-5);
             }
         }

@@ -1,9 +1,9 @@
-//! Made-up worlds with exact truth: what a camera would see in them, and how it would see it move. The feature `sim` turns
-//! this module on; `data_set` needs the feature `io`, too, and course files and results of campaigns need `io` and `serde`.
+//! Simulated worlds with exact ground truth: images, nearness and flow. Enabled by the feature `sim`; `data_set` also
+//! needs the feature `io`, and course files and results of campaigns need `io` and `serde`.
 //!
-//! A [`World`] is made of planes, rectangles, cylinders and boxes, whose intersections with a ray have a closed form, so
-//! that nearness and motion are known to the last digits. Each surface has a texture that knows how far away it is seen
-//! from and shows no detail that a pixel could not resolve.
+//! A [`World`] consists of planes, rectangles, cylinders and boxes, whose intersections with a ray have a closed
+//! form, so that nearness and motion are known to the last digits. Textures are band-limited by the distance of the
+//! camera: they show no detail that a pixel could not resolve.
 //!
 //! ```
 //! use viewsphere::camera::{Camera, Lens, Pose};

@@ -1,22 +1,22 @@
-//! Random numbers that are the same on every machine.
+//! Random numbers that are identical on every machine.
 
 use std::f64::consts::{LN_2, SQRT_2};
 
-/// What SplitMix64 adds to its state for each number: 2^64 over the golden ratio, made odd.
+/// The increment of SplitMix64's state: 2^64 over the golden ratio, made odd.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A generator of random numbers: SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators",
+/// A random number generator: SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators",
 /// 2014). Its period is 2^64.
 ///
-/// A seed gives the same bits on every machine: nothing but integers, the four operations and square roots, which IEEE 754
-/// rounds one way only, goes into a number.
+/// A seed gives the same bits on every machine: only integers, the four operations and square roots, whose results
+/// IEEE 754 defines exactly, are used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// The generator of a seed. All seeds are equally good, 0 and 1 among them.
+    /// The generator of a seed. All seeds are equally good, including 0 and 1.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
@@ -27,20 +27,20 @@ impl Random {
         mix(self.state)
     }
 
-    /// A number of [0, 1): one of the multiples of 2⁻⁵³, all alike.
+    /// A uniform number in [0, 1): a multiple of 2⁻⁵³.
     pub fn uniform(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
     }
 
-    /// A number from the first to the second, all alike; the second itself only by rounding.
+    /// A uniform number from the first to the second; the second itself only by rounding.
     pub fn within(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// A number of the normal distribution of mean 0 and variance 1, by Marsaglia's polar method.
+    /// A number from the standard normal distribution, by Marsaglia's polar method.
     ///
-    /// It takes two or more numbers of the generator; the second one that the method would give is not kept, so that what
-    /// comes next depends on the state alone.
+    /// It uses two or more numbers of the generator. The method's second result is not kept, so that the next number
+    /// depends on the state alone.
     pub fn normal(&mut self) -> f64 {
         loop {
             let (x, y) = (self.within([-1.0, 1.0]), self.within([-1.0, 1.0]));
@@ -51,13 +51,13 @@ impl Random {
         }
     }
 
-    /// A number of the exponential distribution of mean 1: the way to the next of points that lie one to the unit.
+    /// A number from the exponential distribution of mean 1: the gap between points of density 1.
     pub fn exponential(&mut self) -> f64 {
         -ln(1.0 - self.uniform())
     }
 
-    /// A generator of its own for each number of a stream, of which none tells of another. This one stays as it is, so
-    /// that a further stream changes nothing of what was there.
+    /// An independent generator for stream number `stream`. This one stays unchanged, so that an additional stream
+    /// changes no other numbers.
     pub fn fork(&self, stream: u64) -> Self {
         Self { state: mix(self.state ^ mix(stream.wrapping_add(STEP))) }
     }
@@ -70,8 +70,8 @@ fn mix(bits: u64) -> u64 {
     bits ^ bits >> 31
 }
 
-/// The natural logarithm of a normal number above 0. That of the standard library is the platform's, and its last bit is
-/// not the same on each.
+/// The natural logarithm of a normal number above 0. The standard library's differs between platforms in the last
+/// bit.
 fn ln(x: f64) -> f64 {
     let bits = x.to_bits();
     let (mut exponent, mut mantissa) =
@@ -135,7 +135,7 @@ mod tests {
         let mut random = Random::new(2);
         let values: Vec<f64> = (0..200_000).map(|_| random.normal()).collect();
         let n = values.len() as f64;
-        // Of the estimates: 1/n, 2/n, 6/n, 24/n are the variances.
+        // The variances of the estimates: 1/n, 2/n, 6/n, 24/n.
         close(moments(&values), [0.0, 1.0, 0.0, 0.0], [1.0_f64, 2.0, 6.0, 24.0].map(|v| (v / n).sqrt()));
         let beyond = values.iter().filter(|value| value.abs() > 3.0).count() as f64 / n;
         assert!((beyond - 0.0027).abs() <= 5.0 * (0.0027 / n).sqrt(), "{beyond} beyond three deviations");
@@ -156,7 +156,7 @@ mod tests {
         let mut random = Random::new(4);
         for i in 0..10_000 {
             let x = random.uniform().max(1e-300) * 2.0_f64.powi(-(i % 60));
-            // Both round, ours a few times.
+            // Both round; this one a few times.
             let difference = (ln(x) - x.ln()).abs();
             assert!(
                 difference <= 4.0 * f64::EPSILON * x.ln().abs().max(f64::MIN_POSITIVE),
@@ -178,7 +178,7 @@ mod tests {
         sorted.dedup();
         assert_eq!(sorted.len(), 1001);
         assert_eq!(firsts[7], before.fork(7).next_u64());
-        // The same stream of neighbouring seeds: their bits agree in half of the cases.
+        // The same stream of neighbouring seeds: half of their bits agree.
         let alike: u32 = (0..1000)
             .map(|seed| {
                 let [a, b] = [seed, seed + 1].map(|seed| Random::new(seed).fork(0).next_u64());

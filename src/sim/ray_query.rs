@@ -1,4 +1,4 @@
-//! What is seen in many directions at once.
+//! Queries of many rays at once.
 
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::frame::{Plane, Size};
 use crate::sphere::Grid;
 
-/// What a camera sees at the centre of each of its pixels, row by row; none where the lens shows nothing.
+/// What each pixel's ray meets, one element per pixel, row by row; `None` where the lens shows nothing.
 pub fn query_rays(world: &World, rays: &RayTable, pose: &Pose) -> Vec<Option<Seen>> {
     let width = rays.size().width as usize;
     let mut hits = vec![None; rays.size().pixels()];
@@ -28,13 +28,14 @@ pub fn query_rays(world: &World, rays: &RayTable, pose: &Pose) -> Vec<Option<See
     hits
 }
 
-/// Distances along rays through the middles of a grid's sectors, metres: infinite for the sky. Rows and columns are those
-/// of the [`Grid`], which says what azimuth and elevation are.
+/// Distances along rays through the centres of a grid's sectors, metres: infinite for the sky. Rows and columns are
+/// those of the [`Grid`], which defines azimuth and elevation.
 ///
-/// This is how the space in front of a simulated aircraft is scanned by ray casts, at any resolution.
+/// This scans the space in front of a simulated aircraft by ray casts, at any resolution.
 ///
 /// # Errors
-/// [`Error::Parameter`](crate::Error::Parameter) for a grid without rows or columns, or with more than a picture may have.
+/// [`Error::Parameter`](crate::Error::Parameter) for a grid without rows or columns, or with more than an image may
+/// have.
 pub fn ray_grid(world: &World, pose: &Pose, grid: &Grid) -> Result<Plane> {
     let side = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
     let size = Size::new(side(grid.columns), side(grid.rows)).validate()?;
@@ -76,14 +77,14 @@ mod tests {
         let mut solid = 0;
         for (i, seen) in hits.iter().enumerate() {
             let bearing = rays.bearing(i as u32 % 61, i as u32 / 61);
-            // Tiles leave out what they cannot see, and nothing else.
+            // Tiles skip what they cannot see, and nothing else.
             assert_eq!(*seen, bearing.map(|bearing| world.seen(&pose, bearing)), "{i}");
             solid += usize::from(seen.is_some_and(|seen| seen.nearness_per_m > 0.0));
         }
         assert!(solid > 1000, "{solid}");
     }
 
-    /// The later camera is beside, behind and turned against the earlier one, so that other things are in the way.
+    /// The later camera is beside, behind and rotated against the earlier one, so that other things occlude.
     #[test]
     fn what_is_hidden_is_what_something_stands_before() {
         let world = "forest:density=1/40".parse::<CourseKind>().unwrap().course(3).unwrap().world;
@@ -107,14 +108,14 @@ mod tests {
         assert!(hidden > 50 && shown > 2000, "{hidden} {shown}");
     }
 
-    /// Where a point goes in a very short time is where its flow on the sphere leads.
+    /// A point's displacement in a very short time matches its flow on the sphere.
     #[test]
     fn the_spherical_flow_is_the_displacement_of_a_short_time() {
         let world = "city".parse::<CourseKind>().unwrap().course(3).unwrap().world;
         let (camera, [from, to]) = (camera(), [0.0, 1e-4].map(pose));
         let rays = RayTable::new(&camera).unwrap();
         let pixels = displacement(&world, &camera, &rays, &from, &to).unwrap();
-        // A metre a second: the way is the time.
+        // At 1 m/s the distance equals the time.
         let turn = from.world_from_camera.transpose() * to.world_from_camera;
         let rate = DVec3::new(
             turn.y_axis.z - turn.z_axis.y,
@@ -140,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_grid_of_rays_measures_distances() {
-        // Level over the ground: what lies straight below an elevation of −e is at h / sin e.
+        // In level flight over the ground, the ray at elevation −e meets the ground at h / sin e.
         let world = World::new(vec![crate::sim::Surface::plane(DVec3::ZERO, DVec3::NEG_Z).unwrap()]);
         let pose = Pose {
             position_world: DVec3::new(0.0, 0.0, -10.0),

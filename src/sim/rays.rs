@@ -5,18 +5,18 @@ use crate::camera::Camera;
 use crate::error::Result;
 use crate::frame::Size;
 
-/// Side of the squares of pixels for which it is found out at once what they can see.
+/// Side of the tiles: squares of pixels whose visible surfaces are determined together.
 pub(super) const TILE: usize = 16;
 
-/// Where the pixels of a camera look, through its lens. Made once a camera: it takes the lens' inverse of every pixel.
+/// The rays of a camera's pixels, through its lens. Created once per camera: it inverts the lens map at every pixel.
 #[derive(Clone, Debug)]
 pub struct RayTable {
     size: Size,
-    /// Of the pixels' centres.
+    /// Through the pixels' centres, row by row.
     centres: Vec<DVec3>,
-    /// Of the pixels' corners, one more in a row than pixels, and one row more.
+    /// Through the pixels' corners, row by row: one more per row than pixels, and one more row.
     corners: Vec<DVec3>,
-    /// Of each tile, least and largest x/z, least and largest y/z.
+    /// Per tile, least and largest x/z, least and largest y/z.
     tiles: Vec<[f64; 4]>,
 }
 
@@ -40,16 +40,16 @@ impl RayTable {
         Ok(table)
     }
 
-    /// Width and height of the camera's pictures.
+    /// Width and height of the camera's images.
     pub fn size(&self) -> Size {
         self.size
     }
 
-    /// The direction of a pixel's centre: a unit vector in the camera's frame. `None` where the lens has no inverse at
-    /// the centre or a corner of the pixel.
+    /// The direction of a pixel's centre: a unit vector in the camera's frame. `None` where the lens map is not
+    /// invertible at the centre or a corner of the pixel.
     ///
     /// # Panics
-    /// If the pixel is not in the picture.
+    /// If the pixel is outside the image.
     pub fn bearing(&self, x: u32, y: u32) -> Option<DVec3> {
         assert!(x < self.size.width && y < self.size.height, "pixel {x}, {y} of {}", self.size);
         let centre = self.centre(x as usize, y as usize);
@@ -91,7 +91,7 @@ impl RayTable {
         for y in tile_y * TILE..=end(tile_y, self.size.height) {
             for x in tile_x * TILE..=end(tile_x, self.size.width) {
                 let ray = self.corner(x, y);
-                // Not-a-number is passed over by min and max.
+                // min and max ignore NaN.
                 for (i, tangent) in [ray.x / ray.z, ray.y / ray.z].into_iter().enumerate() {
                     bounds[2 * i] = bounds[2 * i].min(tangent);
                     bounds[2 * i + 1] = bounds[2 * i + 1].max(tangent);

@@ -6,24 +6,24 @@ use super::{Hit, RayTable, World};
 use crate::camera::Pose;
 use crate::frame::{Image, PixelFormat, Plane};
 
-/// Samples along each side of a pixel in which more than one thing is seen.
+/// Samples along each side of a pixel that shows more than one surface.
 const SAMPLES: usize = 4;
 /// Corners along the side of a tile.
 const CORNERS: usize = TILE + 1;
 
-/// What a camera sees, and how near it is.
+/// A rendered image, and its nearness.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering {
     /// Gray, 8 bits. Black where the lens shows nothing.
     pub image: Image,
-    /// One over the distance along the ray of each pixel's centre, 1/m: 0 for the sky, NaN where the lens shows nothing.
+    /// The inverse distance along each pixel's central ray, 1/m: 0 for the sky, NaN where the lens shows nothing.
     pub nearness_per_m: Plane,
 }
 
-/// The picture of a world from a place.
+/// Renders a world from a pose.
 ///
-/// A pixel all of whose corners see what its centre sees shows the texture there, which is made for the size of a pixel;
-/// any other is the mean of 16 samples. What is thinner than half a pixel may be missed in between.
+/// A pixel whose corners all show the surface at its centre has the texture's value there, which is band-limited to
+/// the size of a pixel; any other is the mean of 16 samples. Objects thinner than half a pixel may be missed.
 pub fn reference_render(world: &World, rays: &RayTable, pose: &Pose) -> Rendering {
     let size = rays.size();
     let width = size.width as usize;
@@ -44,7 +44,7 @@ pub fn reference_render(world: &World, rays: &RayTable, pose: &Pose) -> Renderin
     Rendering { image, nearness_per_m }
 }
 
-/// How near a camera sees each of its pixels' centres: the nearness of [`reference_render`], without the picture.
+/// The nearness of [`reference_render`], without the image.
 pub fn nearness(world: &World, rays: &RayTable, pose: &Pose) -> Plane {
     let size = rays.size();
     let width = size.width as usize;
@@ -65,7 +65,7 @@ pub fn nearness(world: &World, rays: &RayTable, pose: &Pose) -> Plane {
     plane
 }
 
-/// The surfaces that can be seen in a tile.
+/// The surfaces that may be visible in a tile.
 pub(super) fn reached(
     world: &World,
     rays: &RayTable,
@@ -77,7 +77,7 @@ pub(super) fn reached(
     (0..world.surfaces.len()).filter(within).collect()
 }
 
-/// A square of pixels, and what can be seen in it.
+/// A square of pixels, and the surfaces that may be visible in it.
 struct Tile<'a> {
     world: &'a World,
     rays: &'a RayTable,
@@ -136,7 +136,7 @@ impl<'a> Tile<'a> {
     }
 }
 
-/// What is seen without an edge in between.
+/// The face that a ray meets: hits of the same face have no edge in between.
 fn side_of(hit: &Hit) -> (usize, u32) {
     (hit.surface, hit.face)
 }

@@ -1,4 +1,4 @@
-//! Shapes, and where a ray meets them. Each stands in a frame of its own, in which it is as simple as can be.
+//! Surfaces, and their intersections with rays. Each shape has a frame of its own, in which it is simplest.
 
 use glam::{DMat3, DVec3};
 
@@ -10,53 +10,53 @@ pub struct Surface {
     pub(super) origin_world: DVec3,
     pub(super) local_from_world: DMat3,
     pub(super) shape: Geometry,
-    /// Nothing of it is farther from its origin.
+    /// The radius of the bounding sphere around its origin.
     pub(super) reach_m: f64,
     form: Form,
 }
 
-/// What a [`Surface`] was made of: the arguments of the function that made it, as they were given.
+/// The definition of a [`Surface`]: the arguments of its constructor, as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// Of [`Surface::plane`].
+    /// The arguments of [`Surface::plane`].
     Plane {
-        /// Any point of it, metres.
+        /// Any point of the plane, metres.
         point_world: DVec3,
-        /// Of any length.
+        /// The normal, of any length.
         normal_world: DVec3,
     },
-    /// Of [`Surface::rectangle`].
+    /// The arguments of [`Surface::rectangle`].
     Rectangle {
-        /// Metres.
+        /// The centre, metres.
         centre_world: DVec3,
         /// From the centre to the middle of an edge, metres.
         to_right: DVec3,
-        /// The same, at a right angle.
+        /// The same, to an edge at a right angle.
         to_top: DVec3,
     },
-    /// Of [`Surface::cylinder`].
+    /// The arguments of [`Surface::cylinder`].
     Cylinder {
         /// Centre of one lid, metres.
         base_world: DVec3,
-        /// Centre of the other.
+        /// Centre of the other lid, metres.
         top_world: DVec3,
-        /// Metres.
+        /// The radius, metres.
         radius_m: f64,
     },
-    /// Of [`Surface::cuboid`].
+    /// The arguments of [`Surface::cuboid`].
     Cuboid {
-        /// Metres.
+        /// The centre, metres.
         centre_world: DVec3,
-        /// The directions of its edges are the columns.
+        /// The rotation from the box's frame; its columns are the directions of the edges.
         world_from_box: DMat3,
-        /// Whole lengths, metres.
+        /// Full edge lengths, metres.
         edges_m: DVec3,
     },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Geometry {
-    /// z = 0, without end.
+    /// z = 0, infinite.
     Plane,
     /// z = 0 between ±half.
     Rectangle { half_m: [f64; 2] },
@@ -67,8 +67,8 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Whether any of the shape lies where `normal` · place + `offset_m` is not negative, in its own frame. May be wrong
-    /// in saying yes.
+    /// Whether part of the shape may lie where `normal` · point + `offset_m` ≥ 0, in its own frame. Conservative: it
+    /// may return true wrongly.
     pub(super) fn reaches(&self, normal: DVec3, offset_m: f64) -> bool {
         let n = normal;
         let beyond_m = match *self {
@@ -79,12 +79,12 @@ impl Geometry {
             }
             Self::Cuboid { half_m } => n.abs().dot(half_m),
         };
-        // The margin is for what the normal was rounded by.
+        // The margin covers the rounding of the normal.
         offset_m + beyond_m >= -1e-9 * (1.0 + beyond_m)
     }
 }
 
-/// Where a ray meets a shape, in the shape's frame.
+/// The intersection of a ray and a shape, in the shape's frame.
 struct Met {
     distance_m: f64,
     normal: DVec3,
@@ -92,20 +92,20 @@ struct Met {
     uv_m: [f64; 2],
 }
 
-/// Where a ray meets a surface.
+/// The intersection of a ray and a surface.
 pub(super) struct SurfaceHit {
     pub(super) distance_m: f64,
-    /// Towards where the ray comes from.
+    /// Towards the ray's origin.
     pub(super) normal_world: DVec3,
     pub(super) face: u32,
     pub(super) uv_m: [f64; 2],
 }
 
 impl Surface {
-    /// An endless plane. Its normal points to where there is room; what lies behind it is solid.
+    /// An infinite plane. Its normal points to the free side; the other side is solid.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a place that is not finite, or a normal of no direction.
+    /// [`Error::Parameter`] for a point that is not finite, or a zero normal.
     pub fn plane(point_world: DVec3, normal_world: DVec3) -> Result<Self> {
         let normal = direction("plane normal", normal_world)?;
         let (u, v) = normal.any_orthonormal_pair();
@@ -113,10 +113,11 @@ impl Surface {
         Self::new(point_world, DMat3::from_cols(u, v, normal), Geometry::Plane, form)
     }
 
-    /// A rectangle, seen from both sides. `to_right` and `to_top` lead from its centre to the middles of two of its edges.
+    /// A rectangle, visible from both sides. `to_right` and `to_top` lead from its centre to the middles of two
+    /// edges.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the two are not at a right angle, or of no length.
+    /// [`Error::Parameter`] if the two are not at a right angle, or of length 0.
     pub fn rectangle(centre_world: DVec3, to_right: DVec3, to_top: DVec3) -> Result<Self> {
         let (u, v) = (direction("rectangle side", to_right)?, direction("rectangle side", to_top)?);
         if !(u.dot(v).abs() <= 1e-6) {
@@ -136,7 +137,7 @@ impl Surface {
     /// A cylinder with lids, from the centre of one to that of the other.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for two places that are one, or a radius that is not above 0.
+    /// [`Error::Parameter`] for coinciding points, or a radius that is not above 0.
     pub fn cylinder(base_world: DVec3, top_world: DVec3, radius_m: f64) -> Result<Self> {
         let axis = direction("cylinder axis", top_world - base_world)?;
         let (u, v) = axis.any_orthonormal_pair();
@@ -146,10 +147,10 @@ impl Surface {
         Self::new(base_world, DMat3::from_cols(u, v, axis), Geometry::Cylinder { radius_m, length_m }, form)
     }
 
-    /// A box of these edge lengths, turned by a rotation.
+    /// A box of these edge lengths, oriented by a rotation.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a matrix that is no rotation, or a length that is not above 0.
+    /// [`Error::Parameter`] for a matrix that is not a rotation, or a length that is not above 0.
     pub fn cuboid(centre_world: DVec3, world_from_box: DMat3, edges_m: DVec3) -> Result<Self> {
         edges_m.to_array().into_iter().try_for_each(|edge| positive("box edge", edge))?;
         let off = (world_from_box * world_from_box.transpose() - DMat3::IDENTITY).to_cols_array();
@@ -160,14 +161,14 @@ impl Surface {
         Self::new(centre_world, world_from_box, Geometry::Cuboid { half_m: edges_m / 2.0 }, form)
     }
 
-    /// What the surface was made of.
+    /// The definition of the surface.
     pub fn form(&self) -> Form {
         self.form
     }
 
     fn new(origin_world: DVec3, world_from_local: DMat3, shape: Geometry, form: Form) -> Result<Self> {
         if !origin_world.is_finite() {
-            return Err(Error::parameter("place of a surface", origin_world, "three finite coordinates"));
+            return Err(Error::parameter("position of a surface", origin_world, "three finite coordinates"));
         }
         let reach_m = match shape {
             Geometry::Plane => f64::INFINITY,
@@ -178,7 +179,7 @@ impl Surface {
         Ok(Self { origin_world, local_from_world: world_from_local.transpose(), shape, reach_m, form })
     }
 
-    /// The length after which the texture repeats along u, if u runs around something.
+    /// The period of the texture along u, if u runs around the surface.
     pub(super) fn period_m(&self, face: u32) -> Option<f64> {
         match self.shape {
             Geometry::Cylinder { radius_m, .. } if face == 0 => Some(std::f64::consts::TAU * radius_m),
@@ -186,14 +187,14 @@ impl Surface {
         }
     }
 
-    /// Whether any of the surface lies where `normal_world` · (place − `origin_world`) is not negative. May be wrong in
-    /// saying yes.
+    /// Whether part of the surface may lie where `normal_world` · (point − `origin_world`) ≥ 0. Conservative: it may
+    /// return true wrongly.
     pub(super) fn reaches(&self, origin_world: DVec3, normal_world: DVec3) -> bool {
         let offset_m = normal_world.dot(self.origin_world - origin_world);
         self.shape.reaches(self.local_from_world * normal_world, offset_m)
     }
 
-    /// Where a ray of unit direction meets the surface first.
+    /// The first intersection with a ray of unit direction.
     pub(super) fn hit(&self, origin_world: DVec3, direction_world: DVec3) -> Option<SurfaceHit> {
         let o = self.local_from_world * (origin_world - self.origin_world);
         let d = self.local_from_world * direction_world;
@@ -222,7 +223,7 @@ fn positive(name: &'static str, length_m: f64) -> Result<()> {
     Err(Error::parameter(name, length_m, "above 0 m and finite"))
 }
 
-/// The plane across z.
+/// The intersection with the plane of constant z.
 fn flat(o: DVec3, d: DVec3, z_m: f64, face: u32) -> Option<Met> {
     let distance_m = (z_m - o.z) / d.z;
     let at = o + distance_m * d;
@@ -236,10 +237,10 @@ fn cylinder(o: DVec3, d: DVec3, radius_m: f64, length_m: f64) -> Option<Met> {
     let c = o.x * o.x + o.y * o.y - radius_m * radius_m;
     let discriminant = b * b - a * c;
     if !(discriminant >= 0.0) {
-        // What passes by the endless cylinder passes by the lids.
+        // A ray that misses the infinite cylinder misses the lids.
         return None;
     }
-    // The sum that does not cancel gives one root, the product of the roots the other.
+    // One root from the sum without cancellation, the other from the product of the roots.
     let q = -b - discriminant.sqrt().copysign(b);
     let (one, other) = (q / a, c / q);
     let side = |distance_m: f64| {
@@ -258,7 +259,7 @@ fn by_distance(a: &Met, b: &Met) -> std::cmp::Ordering {
 }
 
 fn cuboid(o: DVec3, d: DVec3, half_m: DVec3) -> Option<Met> {
-    // Distance and axis of where the ray is between all three pairs of faces, and of where it is no longer.
+    // Distance and axis at which the ray enters the last of the three slabs, and at which it leaves the first.
     let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
     for axis in 0..3 {
         if d[axis] == 0.0 {
@@ -279,7 +280,7 @@ fn cuboid(o: DVec3, d: DVec3, half_m: DVec3) -> Option<Met> {
     if !(enter.0 <= leave.0 && leave.0 > 0.0) {
         return None;
     }
-    // From the inside the face behind is seen.
+    // From inside, the far face is visible.
     let ((distance_m, axis), outside) = if enter.0 > 0.0 { (enter, true) } else { (leave, false) };
     let at = o + distance_m * d;
     let positive_face = (d[axis] > 0.0) != outside;

@@ -1,22 +1,23 @@
-//! An endless texture that is band-limited for whoever looks at it.
+//! An infinite texture, band-limited for the viewing distance.
 //!
-//! Octaves of random values on grids, smoothed by a cubic B-spline. The spectrum of such an octave has its first zero at
-//! a wavelength of one grid spacing and next to nothing beyond, so that an octave of a spacing of two pixels is free of
-//! aliasing; those that are finer are left out, softly, by the size of a pixel on the surface.
+//! It sums octaves of random values on grids, smoothed by a cubic B-spline. The spectrum of such an octave has its
+//! first zero at a wavelength of one grid spacing and next to nothing beyond, so that an octave with a spacing of two
+//! pixels is free of aliasing; finer ones fade out by the size of a pixel on the surface.
 
 use crate::kernels::hash::scrambled;
 
-/// Grid spacing of the coarsest octave, 4 m, by its logarithm to base 2. The finest is 2^10 times finer, 3.9 mm.
+/// Base-2 logarithm of the coarsest octave's grid spacing, 4 m. The finest is 2^10 times finer, 3.9 mm.
 const COARSEST_LOG2_M: i32 = 2;
 const OCTAVES: i32 = 11;
-/// Gray levels of an octave. All that are seen add up to a standard deviation of 30 to 45 levels.
+/// Amplitude of an octave in gray levels. All visible ones sum to a standard deviation of 30 to 45 levels.
 const AMPLITUDE: f64 = 50.0;
-/// An octave is there in full from this many halvings of its spacing above a pixel's footprint, and gone one below.
+/// An octave is fully visible from this many halvings of its spacing above a pixel's footprint, and invisible one
+/// below.
 const FULL_LOG2: f64 = 1.5;
 
-/// Gray level of a texture at a place, where a pixel covers `footprint_m`, given by its logarithm to base 2.
+/// The gray level of a texture at a point where a pixel covers `footprint_m`, given by its base-2 logarithm.
 ///
-/// With a period, the texture runs around along u and meets itself there.
+/// With a period, the texture repeats seamlessly along u.
 pub(super) fn gray(uv_m: [f64; 2], period_m: Option<f64>, seed: u32, footprint_log2_m: f64) -> f64 {
     let mut sum = 128.0;
     for octave in 0..OCTAVES {
@@ -35,7 +36,7 @@ pub(super) fn gray(uv_m: [f64; 2], period_m: Option<f64>, seed: u32, footprint_l
 }
 
 fn noise([u, v]: [f64; 2], period_m: Option<f64>, spacing_m: f64, seed: u32) -> f64 {
-    // Around a period there is a whole number of grid points.
+    // A whole number of grid points per period.
     let points = period_m.map(|period| (period / spacing_m).round().max(1.0));
     let column_at = match (points, period_m) {
         (Some(points), Some(period)) => u / period * points,
@@ -54,11 +55,11 @@ fn noise([u, v]: [f64; 2], period_m: Option<f64>, spacing_m: f64, seed: u32) -> 
         sum +=
             row_weight * column_weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
     }
-    // The weights add up to 1: from 0 to u32::MAX in one step to −1 to 1.
+    // The weights sum to 1: map 0 to u32::MAX to −1 to 1 in one step.
     sum / f64::from(u32::MAX) * 2.0 - 1.0
 }
 
-/// The grid point at or before a place, and the weights of the four around it.
+/// The grid point at or before a position, and the weights of the four around it.
 fn spline(at: f64) -> (i64, [f64; 4]) {
     let before = at.floor();
     let t = at - before;

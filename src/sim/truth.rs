@@ -1,4 +1,4 @@
-//! How what is seen moves.
+//! Ground truth: exact nearness, flow and divergence.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,29 +22,29 @@ pub struct Twist {
     pub rate_rad_s: DVec3,
 }
 
-/// What is seen in a direction: the truth of a bearing.
+/// What a ray meets: the ground truth of a bearing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// The direction: a unit vector in the camera's frame.
     pub bearing: DVec3,
-    /// One over the distance, 1/m; 0 for the sky.
+    /// The inverse of the distance, 1/m; 0 for the sky.
     pub nearness_per_m: f64,
-    /// Unit normal of what is seen, in the camera's frame; 0 for the sky.
+    /// The surface's unit normal, in the camera's frame; 0 for the sky.
     pub normal_camera: DVec3,
 }
 
 impl Seen {
-    /// How the bearing moves: −ρ(v − p(pᵀv)) + p × ω, rad/s.
+    /// The flow of the bearing: −ρ(v − p(pᵀv)) + p × ω, rad/s.
     pub fn flow_rad_s(&self, motion: &Twist) -> DVec3 {
         bearing_rate(self.bearing, self.nearness_per_m, motion.velocity_m_s, motion.rate_rad_s)
     }
 
-    /// ρ‖v‖, 1/s: one over the time in which the camera flies the distance of what is seen.
+    /// The nearness rate ρ‖v‖, 1/s: the inverse of the time in which the camera flies the distance of the point.
     pub fn nearness_rate_per_s(&self, motion: &Twist) -> f64 {
         self.nearness_per_m * motion.velocity_m_s.length()
     }
 
-    /// The divergence of the flow on the view sphere, 1/s. It depends on the surface's normal, not on how it bends.
+    /// The divergence of the flow on the view sphere, 1/s. It depends on the surface's normal, not on its curvature.
     pub fn divergence_per_s(&self, motion: &Twist) -> f64 {
         if self.nearness_per_m == 0.0 {
             return 0.0;
@@ -55,12 +55,12 @@ impl Seen {
 }
 
 impl World {
-    /// What a camera sees in the direction of a unit vector of its frame.
+    /// What a camera sees along a bearing: a unit vector in its frame.
     pub fn seen(&self, pose: &Pose, bearing: DVec3) -> Seen {
         self.seen_among(0..self.surfaces.len(), pose, bearing)
     }
 
-    /// The same if it is known that only some surfaces can be met.
+    /// Like [`World::seen`], if only some surfaces can be met.
     pub(super) fn seen_among(
         &self,
         surfaces: impl Iterator<Item = usize>,
@@ -77,12 +77,12 @@ impl World {
     }
 }
 
-/// The true flow in pixels of the distorted pictures from one pose to another: of each pixel's centre, where what is seen
-/// there goes, also if that is outside the picture. Unknown where it is hidden or not in front of the later camera, and
-/// where the lens shows nothing.
+/// The true flow in pixels of the distorted images from one pose to another: the displacement of the point that each
+/// pixel's centre shows, even to outside the image. Unknown where the point is hidden or not in front of the later
+/// camera, and where the lens shows nothing.
 ///
 /// # Errors
-/// [`Error::SizeMismatch`] if the rays are of another size than the camera.
+/// [`Error::SizeMismatch`] if the rays and the camera have different sizes.
 pub fn displacement(
     world: &World,
     camera: &Camera,
@@ -114,7 +114,7 @@ pub fn displacement(
     Ok(FlowField { size, data })
 }
 
-/// Where the later camera shows what the earlier one shows at a pixel. `first` is what a ray meets first.
+/// The pixel at which the later camera shows what the earlier one shows at a pixel. `first` finds a ray's first hit.
 fn goes_to(
     camera: &Camera,
     rays: &RayTable,
@@ -138,7 +138,7 @@ fn goes_to(
     camera.project(to.world_from_camera.transpose() * there)
 }
 
-/// The surfaces that can be seen in a tile, or that can be in the way of what is seen there for who looks from elsewhere.
+/// The surfaces that may be visible in a tile, or may occlude what it shows from another position.
 fn reached_from_both(
     world: &World,
     rays: &RayTable,
@@ -146,7 +146,8 @@ fn reached_from_both(
     other_world: DVec3,
     [tile_x, tile_y]: [usize; 2],
 ) -> Vec<usize> {
-    // What lies between the other place and one on the inner side of a plane is no further beyond it than the other place.
+    // What lies between the other position and a point on a plane's inner side is no further beyond it than that
+    // position.
     let sides = rays.sides(tile_x, tile_y).map(|side| {
         let normal = (pose.world_from_camera * side).normalize();
         let beyond_m = normal.dot(other_world - pose.position_world).min(0.0);

@@ -1,9 +1,9 @@
-//! The cheapest of the arcs that the aircraft can fly.
+//! The policy `arc`: the cheapest of the arcs that the aircraft can fly.
 //!
-//! A candidate is a bank that is held for a while, then level wings, with one of three climbs. It is followed as a
-//! coordinated turn (ψ̇ = g tan φ / V; the bank follows its command with a time constant and a largest rate) from the
-//! present state, the commands before acting until the new one can. Its cost is that of the worst passage of an obstacle
-//! along it, of where it leads, and of what it takes.
+//! A candidate is a bank angle that is held for a while, then level wings, with one of three climb angles. It is
+//! predicted as a coordinated turn (ψ̇ = g tan φ / V; the bank follows its command with a time constant and a maximum
+//! rate) from the present state, with the earlier commands until the new one takes effect. Its cost has terms for the
+//! closest passage of an obstacle along it, for its final direction, and for the effort.
 
 use glam::DVec3;
 
@@ -11,47 +11,48 @@ use super::observation::Moving;
 use super::obstacles::Obstacle;
 use super::{Command, Goal, SteerConfig, SteerParams};
 
-/// Banks to each side, equally spaced up to the limit.
+/// Bank angles to each side, evenly spaced up to the limit.
 const BANKS: i32 = 6;
-/// For how long a bank is held.
+/// Durations for which a bank angle is held.
 const HOLDS_S: [f64; 3] = [0.5, 1.0, 1.8];
-/// Places along an arc at which obstacles are looked for.
+/// Points along an arc at which obstacles are checked.
 pub(super) const PLACES: usize = 20;
-/// Steps of the integration from one place to the next.
+/// Integration steps from one point to the next.
 const STEPS: usize = 4;
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// An arc, its cost, and where it leads.
+/// A candidate arc: its command, cost and predicted path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arc {
-    /// What is commanded for it.
+    /// The command that flies it.
     pub command: Command,
     /// Its cost.
     pub cost: f64,
-    /// The part of the cost that obstacles make, 0 to the weight of the danger.
+    /// The obstacles' part of the cost, 0 to the weight of the danger.
     pub danger: f64,
-    /// Where it leads, from the aircraft along north, east and down, in metres.
+    /// The predicted path: points relative to the aircraft along north, east and down, in metres, evenly spaced in
+    /// time over the horizon.
     pub path_ned_m: [DVec3; PLACES],
 }
 
-/// What the arcs start from.
+/// The state from which the arcs start.
 pub(super) struct Start<'a> {
     pub(super) moving: Moving,
     pub(super) goal: Goal,
-    /// What was commanded last.
+    /// The last command given.
     pub(super) last: Command,
-    /// What acts until the new command does, each until so many seconds from now.
+    /// The commands in effect until the new one is, each with its end in seconds from now.
     pub(super) acting: &'a [(f64, Command)],
 }
 
 impl Start<'_> {
-    /// What acts at a time from now, before the new command does.
+    /// The command in effect at a time from now, before the new one is.
     fn acting(&self, time_s: f64) -> Command {
         self.acting.iter().find(|(until_s, _)| time_s < *until_s).map_or(self.last, |(_, command)| *command)
     }
 }
 
-/// The cheapest arc.
+/// Finds the cheapest arc.
 pub(super) fn cheapest(config: &SteerConfig, start: &Start<'_>, obstacles: &[Obstacle]) -> Arc {
     let params = &config.params;
     let near = Near::new(params, start.moving.speed_m_s, obstacles);
@@ -67,7 +68,7 @@ pub(super) fn cheapest(config: &SteerConfig, start: &Start<'_>, obstacles: &[Obs
                 if best.as_ref().is_none_or(|best| arc.cost < best.cost) {
                     best = Some(arc);
                 }
-                // Level wings stay level, however long.
+                // Level wings stay level, however long they are held.
                 if i == 0 {
                     break;
                 }
@@ -132,17 +133,17 @@ fn arc(
     Arc { command, cost, danger, path_ned_m }
 }
 
-/// Obstacles that can be reached, eight side by side, as the search for the nearest one wants them.
+/// Obstacles within reach, in groups of eight, as the vectorised nearest search needs them.
 struct Near(Vec<Eight>);
 
 #[derive(Clone, Copy)]
 struct Eight {
     place: [[f32; 8]; 3],
-    /// One over the square of the distance at which each is to be passed; 0 where there is none.
+    /// The inverse square of the required clearance of each obstacle; 0 for padding.
     scale: [f32; 8],
 }
 
-/// Beyond so many times the distance at which an obstacle is to be passed it makes no difference.
+/// Beyond this multiple of the required clearance an obstacle does not affect the cost.
 const FAR: f32 = 10.0;
 
 impl Near {
@@ -153,7 +154,7 @@ impl Near {
             .filter(|obstacle| obstacle.place_ned_m.length() < reach_m + 3.0 * aside_m(obstacle))
             .collect();
         let eight = |near: &[&Obstacle]| {
-            // What fills up the last eight is infinitely far away.
+            // Pad the last group with points infinitely far away.
             let mut eight = Eight { place: [[1e9; 8]; 3], scale: [1.0; 8] };
             for (i, obstacle) in near.iter().enumerate() {
                 let place = obstacle.place_ned_m.as_vec3().to_array();
@@ -165,7 +166,7 @@ impl Near {
         Self(near.chunks(8).map(eight).collect())
     }
 
-    /// The smallest distance from a place to an obstacle, each measured by that at which it is to be passed.
+    /// The smallest distance from a point to an obstacle, relative to that obstacle's required clearance.
     fn passage(&self, at: DVec3) -> f64 {
         let at = at.as_vec3().to_array();
         let mut least = [FAR * FAR; 8];
@@ -219,7 +220,7 @@ mod tests {
         }
     }
 
-    /// What was commanded before leads on for as long as it acts, and the arc takes up there.
+    /// Earlier commands are predicted for as long as they are in effect, and the arc continues from there.
     #[test]
     fn earlier_commands_are_followed_while_they_act() {
         let mut config = SteerConfig::default();

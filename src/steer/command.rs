@@ -1,4 +1,4 @@
-/// What an autopilot is asked to fly.
+/// A command to the autopilot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// Bank angle of a coordinated turn, in radians: positive with the right wing down, which turns to the right.

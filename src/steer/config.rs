@@ -3,17 +3,17 @@
 use super::Aircraft;
 use crate::error::{Result, in_ranges};
 
-/// How a command is found.
+/// How a command is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Policy {
-    /// Towards the goal, whatever is in the way.
+    /// Towards the goal, ignoring obstacles.
     None,
     /// As bees do it: away from the side where the flow is faster (M. V. Srinivasan et al., Range perception through
     /// apparent image speed in freely flying honeybees, Visual Neuroscience 6, 1991).
     Balance,
-    /// A force away from every obstacle and one towards the goal (O. Khatib, Real-time obstacle avoidance for manipulators
-    /// and mobile robots, IJRR 5, 1986).
+    /// A repulsive force from every obstacle and an attractive one to the goal (O. Khatib, Real-time obstacle
+    /// avoidance for manipulators and mobile robots, IJRR 5, 1986).
     Potential,
     /// The cheapest heading (J. Borenstein and Y. Koren, The vector field histogram, IEEE Trans. Robotics and Automation
     /// 7, 1991).
@@ -24,12 +24,12 @@ pub enum Policy {
     Arc,
 }
 
-/// What counts as near.
+/// The measure of danger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Danger {
-    /// Half the positive divergence of the flow on the view sphere: it needs no direction of motion, and is the inverse of
-    /// the time to contact straight ahead, but fades to the side and at round things.
+    /// Half the positive divergence of the flow on the view sphere. It needs no direction of motion, and equals the
+    /// inverse of the time to contact straight ahead, but decreases to the side and at round objects.
     Divergence,
     /// The nearness rate, the inverse of the time to contact along each bearing.
     #[default]
@@ -54,65 +54,65 @@ pub struct SteerConfig {
 pub struct SteerParams {
     /// How a command is found.
     pub policy: Policy,
-    /// What counts as near.
+    /// The measure of danger.
     pub danger: Danger,
     /// The steepest bank that is commanded, above 0 and below π/2.
     pub max_bank_rad: f64,
-    /// The steepest climb and descent, 0 to π/4.
+    /// The steepest commanded climb and descent angle, 0 to π/4.
     pub max_climb_rad: f64,
     /// How far ahead arcs are looked at, above 0 and at most 10.
     pub horizon_s: f64,
-    /// How far obstacles are to be passed: half the wing span and a margin, above 0.
+    /// The clearance at which obstacles should be passed: half the wing span and a margin, above 0.
     pub radius_m: f64,
-    /// Over how many metres around that distance a passage becomes a collision, above 0.
+    /// The width of the transition around that clearance over which a passage becomes a collision, above 0.
     pub softness_m: f64,
-    /// After this time a collision counts less by e, above 0.
+    /// The time constant of the discount: a collision after this time counts 1/e of an immediate one, above 0.
     pub discount_s: f64,
-    /// Weights of the terms of the cost.
+    /// The weights of the cost's terms.
     pub weights: Weights,
-    /// Obstacles whose nearness rate is lower are left out, 1/s, above 0.
+    /// The lowest nearness rate at which an obstacle counts, 1/s, above 0.
     pub least_rate_hz: f64,
-    /// What a sector must have known to count, 0 to 1.
+    /// The least coverage at which a sector counts, 0 to 1.
     pub least_coverage: f64,
-    /// How much a new frame counts in the map of danger against what was there, above 0 and at most 1.
+    /// The weight of a new frame against the old value in the map of danger, above 0 and at most 1.
     pub smoothing: f64,
-    /// For how long what has left the view is remembered, 0 to 10.
+    /// How long obstacles that left the view are remembered, 0 to 10.
     pub memory_s: f64,
-    /// Half the angle that an obstacle of the map is wide.
+    /// The angular half width of an obstacle in the map.
     pub half_width_rad: f64,
-    /// Half the width and half the height of the map of danger.
+    /// Half the width and half the height of the map of danger, `[azimuth, elevation]`.
     pub map_half_rad: [f64; 2],
-    /// Width and height of its sectors.
+    /// The width and height of the map's sectors, `[azimuth, elevation]`.
     pub map_pitch_rad: [f64; 2],
-    /// Climb that is asked for a metre below the wanted altitude, rad/m.
+    /// The climb angle commanded per metre below the goal's altitude, rad/m.
     pub climb_per_m: f64,
-    /// What is done without a cue.
+    /// What is flown without a valid cue.
     pub on_invalid: OnInvalid,
 }
 
-/// Weights of the terms of the cost, all 0 or more.
+/// The weights of the cost's terms, all 0 or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Weights {
-    /// Of the worst passage of an obstacle.
+    /// Of the closest passage of an obstacle.
     pub danger: f64,
-    /// Of the end's direction off the goal's, 1 − cos.
+    /// Of the final direction's deviation from the goal's, 1 − cos.
     pub goal: f64,
-    /// Of the change of the commanded bank, rad².
+    /// Of the change of the commanded bank angle, rad².
     pub change: f64,
-    /// Of the bank itself, rad².
+    /// Of the bank angle itself, rad².
     pub bank: f64,
-    /// Of the climb off that which keeps the altitude, rad².
+    /// Of the climb angle's deviation from the one that holds the altitude, rad².
     pub climb: f64,
 }
 
-/// What is done without a cue that can be used.
+/// What is flown without a valid cue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OnInvalid {
-    /// For how long the last command is held.
+    /// How long the last command is held.
     pub hold_s: f64,
-    /// What is flown then, with the wings level.
+    /// The climb angle flown after that, with level wings.
     pub climb_rad: f64,
 }
 
@@ -196,7 +196,7 @@ impl SteerParams {
         ])
     }
 
-    /// The nearest command that is within the limits.
+    /// The command clamped to the limits.
     pub(super) fn limited(&self, command: super::Command) -> super::Command {
         let clamped = |angle: f64, most: f64| if angle.is_finite() { angle.clamp(-most, most) } else { 0.0 };
         super::Command {

@@ -1,4 +1,4 @@
-//! The danger in the directions around, levelled with the horizon.
+//! The map of danger, levelled with the horizon.
 
 use glam::DMat3;
 
@@ -8,16 +8,18 @@ use crate::sphere::{Grid, Sector, Sectors};
 /// Samples along each side of a sector of the map.
 const SAMPLES: [u32; 2] = [2, 4];
 
-/// How soon what lies in each direction would be met, levelled with the horizon and along the direction of motion.
+/// The map of danger: the inverse of the time to contact in each direction, levelled with the horizon and aligned
+/// with the direction of motion.
 ///
-/// Azimuth and elevation are those of a camera that is held level and looks along the motion: [`Grid`] has the signs.
+/// Azimuth and elevation are those of a level camera that looks along the motion: [`Grid`] has the signs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DangerMap {
-    /// Where the sectors lie.
+    /// The layout of the sectors.
     pub grid: Grid,
-    /// Inverse of the time to contact along each sector's bearing, 1/s, row by row; 0 where nothing is near or known.
+    /// Inverse of the time to contact along each sector's bearing, 1/s, one per sector, row by row; 0 where nothing
+    /// is near or known.
     pub rates_hz: Vec<f64>,
-    /// The share of each sector that is in view and known, 0 to 1.
+    /// The share of each sector that is in view and known, 0 to 1, one per sector, row by row.
     pub known: Vec<f64>,
 }
 
@@ -34,7 +36,7 @@ impl DangerMap {
         Self { grid, rates_hz: vec![0.0; grid.len()], known: vec![0.0; grid.len()] }
     }
 
-    /// Forgets everything.
+    /// Clears the map.
     pub(super) fn reset(&mut self) {
         self.rates_hz.fill(0.0);
         self.known.fill(0.0);
@@ -70,7 +72,7 @@ impl DangerMap {
     }
 }
 
-/// The inverse of the time to contact that a sector shows.
+/// The inverse of the time to contact of a sector.
 fn rate_hz(danger: Danger, sector: &Sector) -> f64 {
     let (nearness, growth) = (sector.nearness_rate_hz[2], 0.5 * sector.divergence_hz);
     let rate = match danger {
@@ -78,6 +80,6 @@ fn rate_hz(danger: Danger, sector: &Sector) -> f64 {
         Danger::Divergence => growth,
         Danger::Blend => nearness.max(growth),
     };
-    // Not-a-number and what recedes are no danger.
+    // NaN and what recedes are no danger.
     rate.max(0.0)
 }

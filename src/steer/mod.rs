@@ -1,13 +1,13 @@
-//! From what the view says to bank and climb: danger over the directions around, and the command that avoids it.
+//! Steering: from the sectors of the view to commands of bank and climb that avoid obstacles.
 //!
-//! All of it is host work on a few hundred sectors, and knows no simulator: an aircraft feeds it its own attitude, airspeed
-//! and the sectors of a [`Pipeline`](crate::Pipeline), a frame at a time.
+//! Steering runs on the host, on a few hundred sectors, and is independent of the simulator: an aircraft passes its
+//! own attitude, airspeed and the sectors of a [`Pipeline`](crate::Pipeline), frame by frame.
 //!
-//! Frames: the body's is x forward, y right, z down; the level frame is north, east, down, so that yaw is clockwise from
-//! north. Bank is positive with the right wing down, climb upwards.
+//! Frames: the body's is x forward, y right, z down; the level frame is north, east, down, so that yaw is clockwise
+//! from north. Bank is positive with the right wing down, climb is positive upwards.
 //!
-//! A frame's sectors become a [`DangerMap`], levelled with the horizon and along the direction of motion; its sectors
-//! become balls at the distance that the airspeed gives their time to contact; and the balls are what is to be passed.
+//! A frame's sectors update a [`DangerMap`], levelled with the horizon and aligned with the direction of motion. Near
+//! sectors become obstacles: balls at the distance that follows from airspeed and time to contact.
 
 mod aircraft;
 mod arc;

@@ -1,10 +1,10 @@
-//! Policies and dangers as text.
+//! The names of policies and measures of danger.
 
 use super::{Danger, Policy};
 use crate::named::named;
 
 impl Policy {
-    /// All of them, the simplest first.
+    /// All policies, the simplest first.
     pub const ALL: [Self; 5] = [Self::None, Self::Balance, Self::Potential, Self::Heading, Self::Arc];
 
     /// The name: `none`, `balance`, `potential`, `heading` or `arc`.
@@ -20,7 +20,7 @@ impl Policy {
 }
 
 impl Danger {
-    /// All of them.
+    /// All measures of danger.
     pub const ALL: [Self; 3] = [Self::Divergence, Self::Nearness, Self::Blend];
 
     /// The name: `divergence`, `nearness` or `blend`.

@@ -1,4 +1,4 @@
-//! What steering is told at a frame.
+//! The inputs of steering.
 
 use glam::{DMat3, DVec3};
 
@@ -7,61 +7,61 @@ use crate::camera::{FRD_FROM_CAMERA, roll_pitch_yaw_rad};
 use crate::pipeline::Cue;
 use crate::sphere::{Heading, Sectors};
 
-/// What steering is told at a frame.
+/// The inputs of steering at one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
     /// The frame's time in seconds.
     pub time_s: f64,
-    /// The aircraft's attitude then: turns what is given in the body's frame (forward, right, down) into the level one's
+    /// The aircraft's attitude then: the rotation from the body's frame (forward, right, down) to the level one's
     /// (north, east, down).
     pub ned_from_body: DMat3,
-    /// Its speed through the air, m/s.
+    /// The airspeed, m/s.
     pub airspeed_m_s: f64,
-    /// Which way it moves, a unit vector in the body's frame, from vanes or a navigation filter; none for what the view
-    /// itself tells.
+    /// The direction of motion, a unit vector in the body's frame, from vanes or a navigation filter; `None` to use
+    /// the view's heading.
     pub motion_body: Option<DVec3>,
-    /// Where the flight is to lead.
+    /// The goal of the flight.
     pub goal: Goal,
-    /// What the view says; none if the cue is not to be used.
+    /// The view's sectors and heading; `None` if the cue is invalid.
     pub view: Option<View<'a>>,
 }
 
-/// Where a flight is to lead.
+/// The goal of a flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// In which direction, clockwise from north.
+    /// The direction, clockwise from north.
     pub yaw_rad: f64,
-    /// By how much the aircraft flies too low, in metres; none where no altitude is to be kept.
+    /// How far the aircraft is below the desired altitude, in metres; `None` if no altitude is to be held.
     pub too_low_m: Option<f64>,
 }
 
-/// What the view says.
+/// The measurements of the view.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Its sectors, in the camera's frame.
+    /// The sectors, in the camera's frame.
     pub sectors: &'a Sectors,
-    /// Which way the camera moves, in its own frame.
+    /// The direction of the camera's motion, in its own frame.
     pub heading: Heading,
 }
 
 impl<'a> View<'a> {
-    /// What a pipeline's cue says; none if it is not to be used.
+    /// The measurements of a pipeline's cue; `None` if it is invalid.
     pub fn of(cue: &Cue<'a>) -> Option<Self> {
         cue.invalid.is_none().then_some(Self { sectors: cue.sectors, heading: cue.heading })
     }
 }
 
-/// How the aircraft moves at a frame's time.
+/// The aircraft's motion at a frame's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Moving {
     pub(super) bank_rad: f64,
-    /// Of the path, not of the nose.
+    /// The yaw of the path, not of the nose.
     pub(super) yaw_rad: f64,
     pub(super) climb_rad: f64,
     pub(super) speed_m_s: f64,
 }
 
-/// A heading of the view is taken for the direction of motion if its standard error is below this.
+/// The largest standard error at which the view's heading is used as the direction of motion.
 const KNOWN_RAD: f64 = 0.1;
 
 impl Moving {
@@ -78,8 +78,8 @@ impl Moving {
         }
     }
 
-    /// Turns the level frame's axes along the motion, as a camera's that looks that way (right, down, forward), into
-    /// north, east and down.
+    /// The rotation from the frame of a level camera that looks along the motion (right, down, forward) to north,
+    /// east and down.
     pub(super) fn ned_from_level(&self) -> DMat3 {
         DMat3::from_rotation_z(self.yaw_rad) * FRD_FROM_CAMERA
     }

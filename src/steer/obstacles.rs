@@ -1,4 +1,4 @@
-//! What is to be passed, and what of it is remembered after it has left the view.
+//! The obstacles, in view and remembered.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,22 +7,22 @@ use glam::{DMat3, DVec3};
 use super::{DangerMap, SteerParams};
 use crate::sphere::Grid;
 
-/// A ball that is to be passed.
+/// An obstacle: a ball to pass at a clearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
-    /// From the aircraft, along north, east and down, in metres.
+    /// The centre, relative to the aircraft along north, east and down, in metres.
     pub place_ned_m: DVec3,
-    /// Its radius in metres.
+    /// The radius in metres.
     pub radius_m: f64,
 }
 
-/// What is known to be around: what is in view, and what was.
+/// The known obstacles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Obstacles {
-    /// In view first, then those remembered.
+    /// Those in view first, then those remembered.
     all: Vec<Obstacle>,
     in_view: usize,
-    /// When each that is remembered was seen last.
+    /// When each remembered obstacle was last seen.
     seen_s: Vec<f64>,
 }
 
@@ -35,12 +35,12 @@ impl Obstacles {
         *self = Self::default();
     }
 
-    /// The aircraft has moved on: all that is known now stands elsewhere relative to it.
+    /// Shifts all obstacles after the aircraft has moved.
     pub(super) fn moved(&mut self, by_ned_m: DVec3) {
         self.all.iter_mut().for_each(|obstacle| obstacle.place_ned_m -= by_ned_m);
     }
 
-    /// Takes what a frame shows. What was known before is remembered where the frame does not look.
+    /// Adds the obstacles of a frame. Earlier ones outside the frame's view are remembered.
     pub(super) fn see(
         &mut self,
         params: &SteerParams,
@@ -73,7 +73,7 @@ impl Obstacles {
     }
 }
 
-/// Where a frame looks.
+/// The field of view of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct ViewGeometry<'a> {
     pub(super) ned_from_level: &'a DMat3,
@@ -84,7 +84,7 @@ pub(super) struct ViewGeometry<'a> {
 }
 
 impl ViewGeometry<'_> {
-    /// Whether an obstacle lies within the view, or so far behind that it does not matter any more.
+    /// Whether an obstacle is within the view, or so far behind that it no longer matters.
     fn shows(&self, obstacle: &Obstacle) -> bool {
         let place = obstacle.place_ned_m;
         let ahead = *self.ned_from_level * DVec3::Z;

@@ -1,4 +1,4 @@
-//! The policies to compare with: none, the bees' balance, a potential field, and a cost over headings.
+//! The baseline policies: none, the bees' balance, a potential field, and a cost over headings.
 
 use glam::DVec3;
 
@@ -8,17 +8,17 @@ use super::obstacles::Obstacle;
 use super::{Command, Goal, SteerParams};
 use crate::sphere::angles_rad;
 
-/// Bank for a radian between the path and the goal.
+/// Bank per angle between path and goal, both in radians.
 const GOAL_GAIN: f64 = 0.6;
-/// Bank, in radians, for a difference between the sides of 1 rad/s.
+/// Bank, in radians, per difference between the sides of 1 rad/s.
 const BALANCE_GAIN: f64 = 2.2;
-/// Azimuths whose flow is balanced, off the direction of motion.
+/// The range of azimuths whose flow is balanced, off the direction of motion.
 const BALANCED_RAD: [f64; 2] = [0.16, 0.80];
-/// How far a potential field's force reaches, in seconds of flight.
+/// The reach of the potential field's force, in seconds of flight.
 const REACH_S: f64 = 2.5;
-/// Force of a bearing at half of that, against the goal's.
+/// The force of a bearing at half of that reach, relative to the goal's.
 const FORCE: f64 = 0.012;
-/// Headings looked at to each side, and how far apart they are.
+/// Headings tried to each side, and their spacing.
 const HEADINGS: i32 = 18;
 const HEADING_STEP_RAD: f64 = 0.0524;
 
@@ -27,7 +27,7 @@ pub(super) fn none(params: &SteerParams, moving: &Moving, goal: &Goal) -> Comman
     Command { bank_rad: GOAL_GAIN * off_goal(moving, goal), climb_rad: hold_altitude(params, goal) }
 }
 
-/// Away from the side where the flow is faster.
+/// The policy `balance`: away from the side where the flow is faster.
 pub(super) fn balance(
     params: &SteerParams,
     moving: &Moving,
@@ -51,13 +51,13 @@ pub(super) fn balance(
     Command { bank_rad, climb_rad: hold_altitude(params, goal) }
 }
 
-/// The frame of a camera that is held level and looks along the motion.
+/// The frame of a level camera that looks along the motion.
 pub(super) struct Level {
     pub(super) from_camera: glam::DMat3,
     pub(super) ned_from: glam::DMat3,
 }
 
-/// Along the sum of a force towards the goal and of one away from every obstacle.
+/// The policy `potential`: along the sum of a force towards the goal and one away from every obstacle.
 pub(super) fn potential(
     params: &SteerParams,
     moving: &Moving,
@@ -73,14 +73,14 @@ pub(super) fn potential(
         force -= FORCE * share * share * obstacle.place_ned_m.normalize_or_zero();
     }
     let there = level.ned_from.transpose() * force;
-    // A fixed wing cannot go back, however hard it is pushed: what counts is to which side.
+    // A fixed wing cannot go back, however hard it is pushed: only the side counts.
     let ahead = there.z.max(0.5);
     let [azimuth, elevation] = [there.x.atan2(ahead), (-there.y).atan2(there.x.hypot(ahead))];
     let climb_rad = if obstacles.is_empty() { hold_altitude(params, goal) } else { elevation };
     Command { bank_rad: bank_for(moving, azimuth), climb_rad }
 }
 
-/// The cheapest heading.
+/// The policy `heading`: the cheapest heading.
 pub(super) fn heading(
     params: &SteerParams,
     moving: &Moving,
@@ -112,7 +112,7 @@ pub(super) fn heading(
     Command { bank_rad: bank_for(moving, best), climb_rad: hold_altitude(params, goal) }
 }
 
-/// The bank that turns by an angle in two fifths of a second, were it there at once.
+/// The bank that turns by an angle in 0.4 s, if it were reached at once.
 fn bank_for(moving: &Moving, turn_rad: f64) -> f64 {
     (2.5 * turn_rad * moving.speed_m_s / 9.81).atan()
 }

@@ -9,7 +9,7 @@ use super::simple::{self, Level};
 use super::{Command, DangerMap, Policy, SteerConfig};
 use crate::error::Result;
 
-/// Finds a command a frame.
+/// Steering: computes a command per frame.
 #[derive(Clone, Debug)]
 pub struct Steering {
     config: SteerConfig,
@@ -17,45 +17,45 @@ pub struct Steering {
     obstacles: Obstacles,
     arc: Option<Arc>,
     last: Command,
-    /// Commands that may still act or are yet to, oldest first, each with the time of its frame.
+    /// Commands in effect now or later, oldest first, each with the time of its frame.
     given: VecDeque<(f64, Command)>,
-    /// Those of them that act before a new one does, each until so many seconds from now.
+    /// Commands in effect before a new one is, each with its end in seconds from now.
     acting: Vec<(f64, Command)>,
     last_heading_rad: f64,
-    /// When, and how fast along north, east and down, the aircraft was last observed.
+    /// The last observation: its time, and the velocity along north, east and down.
     before: Option<(f64, DVec3)>,
-    /// The last frame with a cue.
+    /// The time of the last frame with a valid cue.
     seen_s: Option<f64>,
 }
 
-/// Where a command comes from.
+/// The origin of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The view.
     Cue,
-    /// There is no cue, and the last command is held.
+    /// There is no valid cue, and the last command is held.
     Held,
-    /// There has been no cue for longer: wings level, and the climb that was asked for in that case.
+    /// There has been no valid cue for longer: level wings, and the configured climb.
     Recovery,
 }
 
-/// What is to be flown, and why.
+/// A command, and its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// What is to be flown.
+    /// The command to fly.
     pub command: Command,
-    /// Where it comes from.
+    /// The origin of the command.
     pub source: Source,
-    /// What obstacles add to the cost of the arc that was chosen, against the weight of the danger: 0 is free, 1 is a
-    /// collision at once. None for policies without arcs.
+    /// The obstacles' part of the chosen arc's cost, relative to the weight of the danger: 0 is free, 1 an immediate
+    /// collision. `None` for policies without arcs.
     pub danger: Option<f64>,
 }
 
 impl Steering {
-    /// Steering of which nothing has been asked yet.
+    /// Steering without a history.
     ///
     /// # Errors
-    /// As [`SteerConfig::validate`].
+    /// As in [`SteerConfig::validate`].
     pub fn new(config: SteerConfig) -> Result<Self> {
         config.validate()?;
         Ok(Self {
@@ -72,27 +72,27 @@ impl Steering {
         })
     }
 
-    /// How the commands come about.
+    /// The configuration.
     pub fn config(&self) -> &SteerConfig {
         &self.config
     }
 
-    /// The danger in the directions around, after the last frame with a cue.
+    /// The map of danger, after the last frame with a valid cue.
     pub fn map(&self) -> &DangerMap {
         &self.map
     }
 
-    /// What is known to be around, after the last frame.
+    /// The known obstacles, those in view first, after the last frame.
     pub fn obstacles(&self) -> &[Obstacle] {
         self.obstacles.all()
     }
 
-    /// The arc that was chosen at the last frame, by the policy that looks at arcs.
+    /// The arc chosen at the last frame, if the policy evaluates arcs.
     pub fn arc(&self) -> Option<&Arc> {
         self.arc.as_ref()
     }
 
-    /// Forgets everything that was seen and commanded.
+    /// Forgets all observations and commands.
     pub fn reset(&mut self) {
         self.map.reset();
         self.obstacles.reset();
@@ -101,9 +101,9 @@ impl Steering {
         self.given.clear();
     }
 
-    /// What is to be flown from this frame on.
+    /// Computes the command to fly from this frame on.
     ///
-    /// An observation whose time, attitude or airspeed is not a number, or whose airspeed is not above 0, counts as one
+    /// An observation whose time, attitude or airspeed is NaN, or whose airspeed is not above 0, counts as one
     /// without a cue.
     pub fn update(&mut self, o: &Observation<'_>) -> Decision {
         let sound = o.time_s.is_finite() && o.ned_from_body.is_finite() && o.airspeed_m_s > 0.1;
@@ -170,14 +170,14 @@ impl Steering {
         Decision { command: self.config.params.limited(command), source: Source::Cue, danger }
     }
 
-    /// What acts from now on until a new command does.
+    /// Determines the commands in effect from now until the new one.
     fn look_back(&mut self, time_s: f64) {
         let delay_s = self.config.aircraft.delay_s();
         // Where times went back, what was given since makes no sense.
         while self.given.back().is_some_and(|(given_s, _)| *given_s >= time_s) {
             self.given.pop_back();
         }
-        // The oldest one acts until the second does.
+        // The oldest one is in effect until the second one is.
         while self.given.get(1).is_some_and(|(given_s, _)| !(given_s + delay_s > time_s)) {
             self.given.pop_front();
         }

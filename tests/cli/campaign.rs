@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use crate::program::{Ended, program, refused};
 
-/// A wall that is soon there, and soon passed.
+/// A wall that is reached soon, and passed soon.
 const WALL: &str = "wall:distance=40:width=20:incidence=0:past=5";
-/// What is cheap to fly.
+/// Settings that are cheap to fly.
 const CHEAP: [&str; 6] = ["--sensors", "depth", "--body", "turn", "--sizes", "96x72"];
 
 fn campaign(folder: &Path, name: &str, args: &[&str]) -> Ended {
@@ -27,7 +27,7 @@ fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).unwrap()
 }
 
-/// All that a campaign wrote.
+/// The files that a campaign wrote.
 fn files(folder: &Path, name: &str) -> [String; 4] {
     ["results.jsonl", "table.csv", "table.json", "report.html"]
         .map(|file| read(folder, &format!("{name}/{file}")))
@@ -70,7 +70,7 @@ fn the_table_counts_what_the_flights_say() {
         .collect();
     assert_eq!(keys, [("none", 8.0), ("none", 12.0), ("arc", 8.0), ("arc", 12.0)]);
     assert_eq!(csv.lines().count(), 5);
-    // A column for what differs, and the rest said once.
+    // A column for what differs between rows; the rest is stated once.
     assert!(page.contains("<h2>12 flights</h2>") && page.contains("sensor depth, danger nearness"), "{page}");
     let rows_shown = ["none", "arc"].map(|policy| page.matches(&format!(">{policy}</td>")).count());
     assert_eq!(rows_shown, [2, 2], "{page}");
@@ -96,7 +96,7 @@ fn the_table_counts_what_the_flights_say() {
         }
         assert_eq!(row["success"].as_f64().unwrap(), count("reached") as f64 / 3.0);
     }
-    // Straight on it is the wall, unless that is aside.
+    // The wall is straight ahead unless it is offset.
     assert!(rows[2]["reached"].as_u64().unwrap() > rows[0]["reached"].as_u64().unwrap(), "{json}");
 }
 
@@ -111,13 +111,13 @@ fn a_campaign_goes_on_where_it_was_stopped() {
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() - 10]).unwrap();
     let ended = well(campaign(folder, "cut", &["--seeds", "0..4"]));
-    assert!(ended.stderr.contains("half-written line"), "{}", ended.stderr);
-    assert!(ended.stderr.contains("4 flights, 2 of them done before"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("incomplete last line"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("4 flights, 2 already done"), "{}", ended.stderr);
     assert_eq!(files(folder, "cut"), whole);
     let again = well(campaign(folder, "cut", &["--seeds", "0..4"]));
     assert!(again.stderr.contains("4 flights, 4 of them done before"), "{}", again.stderr);
     assert_eq!(files(folder, "cut"), whole);
-    // What was flown in other air does not belong there, and neither is touched.
+    // Results with another wind do not belong to the campaign; neither file may change.
     let ended = campaign(folder, "cut", &["--seeds", "0..4", "--wind", "1,0,0"]);
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
     assert!(
@@ -169,7 +169,7 @@ fn a_flight_that_failed_is_an_error_until_it_was_flown() {
         error.contains("failed is 1, expected none; the first is ") && error.ends_with("/1: out of memory"),
         "{error}"
     );
-    // The table is there nevertheless, and counts it apart.
+    // The table is printed nevertheless, and counts the failure separately.
     assert!(!ended.stdout.is_empty());
     let table: Value = serde_json::from_str(&read(folder, "a/table.json")).unwrap();
     assert_eq!((&table["rows"][0]["flights"], &table["rows"][0]["failed"]), (&1.into(), &1.into()));

@@ -1,4 +1,4 @@
-//! The program as its users run it: what it writes, what it says, and how it ends.
+//! The program as its users run it: its files, its output and its exit codes.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::need::{self, Without};
 
 const SIZE: Size = Size::new(72, 50);
 
-/// How a run ended.
+/// The result of a run.
 struct Ended {
     code: Option<i32>,
     stdout: Vec<u8>,
@@ -245,9 +245,9 @@ fn the_executors_are_compared_and_a_breach_ends_with_1() {
     let text = run(&folder, &["crosscheck", "0.png", "1.png", "--steps"]).well().text();
     assert!(text.contains("every value of every step") && text.contains("solve (frame 1, level 0"), "{text}");
     assert!(text.contains("confidence (frame 1, confidence): confidence"), "{text}");
-    // The same bits on both sides are not promised: the last digit of a division or a square root is the driver's.
+    // Bit-identical results are not promised: the last digit of a division or a square root depends on the driver.
     let ended = run(&folder, &["crosscheck", "0.png", "1.png", "--bounds", "0"]);
-    let differs = !ended.text().contains("first step that differs at all: none");
+    let differs = !ended.text().contains("first step with any difference: none");
     assert_eq!(ended.code, Some(i32::from(differs)));
     assert_eq!(ended.text().contains("FAILED"), differs, "{}", ended.text());
 }

@@ -1,4 +1,4 @@
-//! What the program says of bad input: one line on standard error, 2 at the end, and nothing written.
+//! Bad input: one line on standard error, exit code 2, and no file written.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
 use viewsphere::io::{flo, npy, picture};
 
-/// A folder of good and bad files.
+/// A folder of valid and invalid files.
 fn files() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);

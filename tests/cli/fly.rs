@@ -10,10 +10,10 @@ use viewsphere::sim::CourseKind;
 
 use crate::program::{Ended, program, refused};
 
-/// A wall that is soon there, and soon passed.
+/// A wall that is reached soon, and passed soon.
 const WALL: &str = "wall:distance=40:width=20:incidence=0:offset=6:past=5";
 
-/// From frame to frame.
+/// The time between frames.
 const FRAME_S: f64 = 1.0 / 30.0;
 
 /// Half a second of flight beside a pole.
@@ -23,13 +23,13 @@ const YARD: &str = r#"{
   "surfaces": [{"kind": "ground"}, {"kind": "cylinder", "base_m": [20, 5, 0], "top_m": [20, 5, -25], "radius_m": 1}]
 }"#;
 
-/// Flies into a folder of this name.
+/// Flies into folder `name`.
 fn fly(folder: &Path, name: &str, args: &[&str]) -> Ended {
     let first = ["fly", "--world", WALL, "--body", "turn", "--no-video", "-o", name];
     program(folder, &[&first, args].concat())
 }
 
-/// What is in a folder.
+/// The file names in a folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = folder.read_dir().unwrap();
     let mut names: Vec<_> =
@@ -38,7 +38,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The objects of a log: what it was, the frames, how it ended.
+/// The objects of a log: the header, the frames, the end.
 #[track_caller]
 fn log(folder: &Path, name: &str) -> (Value, Vec<Value>, Value) {
     let text = fs::read_to_string(folder.join(name).join("flight.jsonl")).unwrap();
@@ -77,10 +77,10 @@ fn the_log_tells_the_flight_from_beginning_to_end() {
         for vector in ["position_ned_m", "velocity_ned_m_s", "roll_pitch_yaw_rad", "rate_body_rad_s"] {
             assert_eq!(frame[vector].as_array().unwrap().len(), 3, "{vector}");
         }
-        // What is seen acts a frame later.
+        // A command takes effect one frame after its image.
         let decided = number.checked_sub(1).map_or(&Value::Null, |before| &frames[before]["command"]);
         assert!(number == 0 || &frame["acting"] == decided, "{frame}");
-        // A gyro's log has to reach over both of a pair's frames: the first frame after the gap is without one too.
+        // The gyro's log must cover both frames of a pair: the first frame after the gap has no cue either.
         let lost = (1.0..1.5 + 2.0 * FRAME_S).contains(&time_s);
         let after = (1.5..1.5 + 2.0 * FRAME_S).contains(&time_s);
         assert!(after || frame["invalid"].is_string() == (number == 0 || lost), "{frame}");
@@ -110,7 +110,7 @@ fn a_video_shows_every_frame_and_changes_nothing() {
     fs::write(folder.join("yard.json"), YARD).unwrap();
     fs::create_dir(folder.join("a")).unwrap();
     for sensor in [&["--sensor", "depth"][..], &["--backend", "cpu", "--size", "240x180"]] {
-        // Of an earlier flight that was measured.
+        // A file of an earlier flight with --measure.
         fs::write(folder.join("a/flight.jsonl"), "{\"viewsphere\":\"0.1.0\"}\n").unwrap();
         fs::write(folder.join("a/divergence.png"), "").unwrap();
         let args = [&["fly", "--world-file", "yard.json", "--body", "turn", "-o", "a"], sensor].concat();
@@ -132,7 +132,8 @@ fn a_video_shows_every_frame_and_changes_nothing() {
             before.clone_from(&image);
         }
         assert_eq!(video.frames_read(), frames.len().div_ceil(3) as u64);
-        // The same flight again, and without it, into the same folder: what is left of the first one would be taken for this one's.
+        // The same flight again without it, into the same folder: leftovers of the first one would be taken for the
+        // second's.
         let whole = fs::read(folder.join("a/flight.jsonl")).unwrap();
         assert!(matches!(program(folder, &args).code, Some(0)));
         assert!(bytes == fs::read(folder.join("a/flight.y4m")).unwrap(), "{sensor:?}");
@@ -218,7 +219,7 @@ fn a_world_file_that_is_missing_or_wrong_is_an_error_of_one_line() {
         assert!(ended.stderr.contains("yard.json: ") && ended.stderr.contains(words), "{}", ended.stderr);
         assert_eq!(names(folder), ["yard.json"]);
     }
-    // What is read is not written over.
+    // Inputs are not overwritten.
     fs::write(folder.join("flight.jsonl"), YARD).unwrap();
     let ended = program(folder, &["fly", "--world-file", "flight.jsonl", "--sensor", "depth", "-o", "."]);
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
@@ -249,7 +250,7 @@ fn every_policy_flies_and_only_those_that_avoid_get_past() {
         assert_eq!(end, log(folder.path(), policy).2);
         let reached = end["outcome"] == "reached";
         assert_eq!(ended.code, Some(i32::from(!reached)), "{policy}");
-        // What the simple ones do is not asked of them, only that they say it.
+        // The simple policies need not succeed, only report how they ended.
         assert!(code < 0 || ended.code == Some(code), "{policy}: {end}");
     }
     assert_eq!(log(folder.path(), "none").2["outcome"], "crashed");
@@ -305,7 +306,7 @@ fn pictures_that_fail_are_said_in_the_log() {
     };
     assert!(during(1.0, 1.2).count() == 6 && during(2.0, 2.5).count() == 15);
     assert!(during(1.0, 1.2).all(|frame| frame["invalid"].is_string()), "{frames:?}");
-    // From the first frame on, and for as long as it lasts.
+    // From the first frame on, and for as long as the fault lasts.
     let reasons: Vec<&str> = during(2.0, 2.5).map(|frame| frame["invalid"].as_str().unwrap()).collect();
     assert!(reasons[0].contains("is trusted"), "{reasons:?}");
     assert!(
@@ -326,7 +327,7 @@ fn what_is_measured_changes_nothing_of_the_flight() {
     assert_eq!(plain.code, ended.code, "{}", ended.stderr);
     assert!(ended.stdout.contains("divergence at 1.50 s, full colour at ±2 /s"), "{}", ended.stdout);
     let picture = viewsphere::io::picture::read(folder.path().join("measured/divergence.png")).unwrap();
-    // Two pictures of 40 by 30 cells, 4 pixels each, 8 pixels between them and a scale of 30 below.
+    // Two images of 40 by 30 cells, 4 pixels each, 8 pixels between them and a scale of 30 below.
     assert_eq!(picture.size, "328x150".parse().unwrap());
     assert!(!folder.path().join("plain/divergence.png").exists());
     let [(header, frames, end), (other_header, mut measured, mut measured_end)] =
@@ -384,6 +385,6 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--seed", "1.5"], &["--seed", "a whole number from 0 on"]);
     fly(&["--latency-frames", "-1"], &["--latency-frames", "\"-1\"", "a whole number from 0 to 30"]);
     fly(&["--measure", "--picture-at", "-1"], &["--picture-at is -1"]);
-    fly(&["--size", "-1x2"], &["'-1'", "no negative number is expected there; see viewsphere fly"]);
+    fly(&["--size", "-1x2"], &["'-1'", "a negative number is not expected here; see viewsphere fly"]);
     fly(&["-o", "/proc/x/y", "--sensor", "depth"], &["/proc/x/y: "]);
 }

@@ -1,4 +1,4 @@
-//! What a program leaves that is stopped in the middle.
+//! The files that an interrupted program leaves.
 #![cfg(unix)]
 
 use std::fs;
@@ -7,14 +7,14 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A second of flight.
+/// A world for one second of flight.
 const YARD: &str = r#"{
   "format": "viewsphere course", "version": 1, "name": "yard", "seed": 5,
   "start_ned_m": [0, 0, -10], "length_m": 12, "altitude_m": [2, 30],
   "surfaces": [{"kind": "ground"}]
 }"#;
 
-/// What is in a folder; nothing where there is none.
+/// The file names in a folder; empty if it does not exist.
 fn names(folder: &Path) -> Vec<String> {
     let entries = folder.read_dir().into_iter().flatten();
     let mut names: Vec<_> =
@@ -23,19 +23,19 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Whether it holds a part of a video.
+/// Whether a partial video is among them.
 fn has_part(names: &[String]) -> bool {
     names.iter().any(|name| name.starts_with(".flight.y4m.") && name.ends_with(".tmp"))
 }
 
-/// Begins a flight into the folder `a`.
+/// Starts a flight into folder `a`.
 fn fly(folder: &Path, args: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
     command.args(["fly", "--sensor", "depth", "--quiet", "-o", "a"]).args(args).current_dir(folder);
     command.stdout(Stdio::null()).spawn().unwrap()
 }
 
-/// A long flight whose video has begun.
+/// Starts a long flight, and waits until its video has begun.
 fn begun(folder: &Path) -> Child {
     let mut flight = fly(folder, &["--world", "forest:length=1000"]);
     let since = Instant::now();
@@ -60,7 +60,7 @@ fn what_a_killed_flight_has_left_goes_with_the_next_one() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
         let mut killed = begun(folder);
-        // While it is flown the part of its video stays.
+        // While the first flight runs, its partial video stays.
         assert!(has_part(&next(folder, more)));
         killed.kill().unwrap();
         killed.wait().unwrap();

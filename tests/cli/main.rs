@@ -1,4 +1,4 @@
-//! The program as its users run it: what it writes, what it says, and how it ends.
+//! The program as its users run it: its files, its output and its exit codes.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod campaign;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// How a run ended.
+/// The result of a run.
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
@@ -14,14 +14,14 @@ pub(crate) struct Ended {
 pub(crate) fn program(folder: &Path, args: &[&str]) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
     command.args(args).current_dir(folder).env_remove("XDG_RUNTIME_DIR").stdin(Stdio::null());
-    // A test leaves nothing in the user's folders.
+    // Tests leave nothing in the user's folders.
     command.env("VIEWSPHERE_CACHE", "");
     let output = command.output().unwrap_or_else(|error| panic!("{error}"));
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap_or_else(|error| panic!("{error}"));
     Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-/// Expects an error of one line that holds these words, and that the folder is left as it was: empty.
+/// Expects an error of one line that contains these words, and that the folder stays empty.
 #[track_caller]
 pub(crate) fn refused(args: &[&str], words: &[&str]) {
     let folder = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));

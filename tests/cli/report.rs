@@ -1,4 +1,4 @@
-//! A flight to look at: its video and its page.
+//! The reports of a flight: its video and its page.
 
 use viewsphere::Backend;
 use viewsphere::frame::{Image, PixelFormat, Size};
@@ -6,7 +6,7 @@ use viewsphere::report::flight::{FlightReport, FlightVideo};
 use viewsphere::sim::flight::{Flight, FlightConfig, Sensor, camera};
 use viewsphere::sim::{Course, CourseKind};
 
-/// Frames that are flown.
+/// The number of frames flown.
 const FRAMES: usize = 40;
 
 fn course(name: &str) -> Course {
@@ -39,7 +39,7 @@ fn filmed(course: &Course, config: &FlightConfig) -> Image {
     last
 }
 
-/// How many pixels have about a colour.
+/// The number of pixels of about a colour.
 fn count(image: &Image, colour: [u8; 3]) -> usize {
     let near = |pixel: &&[u8; 3]| pixel.iter().zip(colour).all(|(a, b)| a.abs_diff(b) < 12);
     image.data.as_chunks::<3>().0.iter().filter(near).count()
@@ -55,7 +55,7 @@ fn a_video_shows_the_arc_the_world_and_what_is_wrong() {
         let image = filmed(&course("city"), &config(sensor, &[]));
         // A line of some 20 m in the map, the ribbon's edges, and the line in the map of danger.
         assert!(count(&image, ARC) > 300, "{sensor:?} {} {}", count(&image, ARC), count(&image, WRONG));
-        // A house is 15 m wide, and a metre 8 pixels.
+        // A house is 15 m wide, at 8 pixels per metre.
         assert!(count(&image, SOLID) > 2000, "{sensor:?} {}", count(&image, SOLID));
         assert_eq!(count(&image, WRONG), 0, "{sensor:?}");
     }
@@ -99,7 +99,7 @@ fn a_page_needs_nothing_beside_itself_and_tells_the_flight() {
     let html = report.html();
     assert!(html.contains("&lt;city&gt; &amp; &quot;more&quot;, seed 3") && !html.contains("<city>"));
     assert!(html.contains("<b>reached</b>") && html.contains("the &lt;CPU&gt;"));
-    // The fault, and what it did to the cue, with its reason.
+    // The fault, and its effect on the cue, with the reason.
     assert!(html.contains("black:1..1.5") && html.contains("of the view is trusted"));
     for foreign in ["http:", "https:", "<script", "<link", "src=", "@import", "NaN", "inf\""] {
         assert!(!html.contains(foreign), "{foreign}");

@@ -18,7 +18,7 @@ use crate::need::{self, Without};
 const SIZE: Size = Size::new(96, 72);
 const FRAMES: u32 = 8;
 
-/// How a run ended.
+/// The result of a run.
 struct Ended {
     code: Option<i32>,
     stdout: String,
@@ -32,7 +32,7 @@ impl Ended {
         self
     }
 
-    /// The lines of JSON, without what differs from run to run.
+    /// The lines of JSON, without what differs between runs.
     #[track_caller]
     fn lines(&self) -> Vec<Value> {
         let line = |line: &str| {
@@ -82,7 +82,7 @@ fn video(frames: impl Iterator<Item = Image>) -> Vec<u8> {
     video.finish().unwrap()
 }
 
-/// A folder with a scene that comes nearer and turns: pictures, a video, raw bytes.
+/// A folder with an approaching, rotating scene: images, a video, raw bytes.
 fn flight() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let scene = Scene::new(SIZE).unwrap();
@@ -203,7 +203,7 @@ fn a_gyro_spoils_the_frames_that_it_does_not_cover_and_no_others() {
         }
         assert!(ended.stderr.contains("1 first"), "{name}: {}", ended.stderr);
     }
-    // A camera whose clock began at another time.
+    // A camera whose clock started at another time.
     write(&folder, "gyro.csv", &gyro_log(|i| Some(still(i))));
     let args = ["a.y4m", "--fov-deg", "90", "--json-lines", "--gyro", "gyro.csv", "--start-s", "100"];
     assert_eq!(run(&folder, &args).well().invalid().len(), FRAMES as usize);
@@ -255,7 +255,7 @@ fn no_input_is_overwritten() {
     let before = fs::read(folder.path().join("a.y4m")).unwrap();
     for overlay in ["a.y4m", "./a.y4m"] {
         let args = ["a.y4m", "--fov-deg", "90", "--quiet", "--overlay", overlay];
-        refused(&folder, &args, &["--overlay is", "a.y4m, expected another place"]);
+        refused(&folder, &args, &["--overlay is", "a.y4m, expected a path other than"]);
     }
     assert_eq!(fs::read(folder.path().join("a.y4m")).unwrap(), before);
 }
@@ -290,7 +290,7 @@ fn an_overload_drops_frames_and_counts_them() {
         let [frames, dropped] = ["frames", "dropped"].map(|name| summary[name].as_u64().unwrap());
         assert!(dropped > 0 && frames >= 2 && frames + dropped == 200, "{summary}");
     }
-    // As fast as a file plays, nothing is lost where there is time for each frame.
+    // At a low frame rate nothing is dropped, as there is time for each frame.
     let slow = ["a.y4m", "--fps", "4", "--fov-deg", "90", "--realtime", "--json", "--preset", "fast"];
     let summary: Value = serde_json::from_str(&run(&folder, &slow).well().stdout).unwrap();
     assert_eq!((&summary["frames"], &summary["dropped"]), (&FRAMES.into(), &0.into()), "{summary}");
@@ -318,7 +318,7 @@ fn an_overlay_shows_every_frame_and_is_whole_or_not_there() {
     run(&folder, &[&args[..], &["level.y4m", "--level", "-5,10"]].concat()).well();
     let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert!(frames("level.y4m") == u64::from(FRAMES) && bytes("level.y4m") != bytes("plain.y4m"));
-    // What was processed before the end of a video that was cut off is there.
+    // The overlay holds the frames processed before the end of a truncated video.
     assert_eq!(run(&folder, &["cut.y4m", "--fov-deg", "90", "--overlay", "c.y4m"]).code, Some(2));
     assert_eq!(frames("c.y4m"), u64::from(FRAMES - 1));
     for (path, words) in [
@@ -386,7 +386,7 @@ fn what_does_not_belong_together_is_refused() {
     ] {
         refused(&folder, args, words);
     }
-    // That a video is longer or shorter than its list of times is seen at its end.
+    // A mismatch between a video and its list of times shows only at the end.
     let ended = run(&folder, &["a.y4m", fov[0], fov[1], "--times", "two.csv"]);
     assert_eq!((ended.code, ended.stdout.lines().count()), (Some(2), 2));
     assert!(

@@ -1,4 +1,4 @@
-//! Data sets as the program makes them: what is in them is true, and the other commands read them.
+//! Data sets as the program writes them: their ground truth holds, and the other commands read them.
 
 use std::fs;
 use std::path::Path;
@@ -96,7 +96,7 @@ fn a_set_is_whole_and_its_truths_agree() {
         solid += 1;
     }
     assert!(solid > 2000 && sky > 500, "{solid} {sky}");
-    // The sensor's samples lie around the true ones, from the first frame to the last.
+    // The noisy samples lie around the true ones, from the first frame to the last.
     let [noisy, exact] = ["gyro.csv", "gyro_true.csv"].map(|name| gyro_log::read(set.join(name)).unwrap());
     assert_eq!((noisy.len(), exact.len()), (11 * 8 + 1, 11 * 8 + 1));
     let square: f64 =
@@ -111,12 +111,12 @@ fn a_set_is_whole_and_its_truths_agree() {
 fn a_large_set_is_announced() {
     let folder = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
-    // It fails where it would begin to write: what is there is no data set.
+    // It fails before it writes anything: the existing folder is not a data set.
     fs::create_dir_all(folder.path().join("set/x")).unwrap();
     let args = ["simulate", "--size", "2048x1024", "--seconds", "10", "-o", "set"];
     let output = command.args(args).current_dir(folder.path()).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
-    // Pictures, flow and depth: 13 bytes for each of 2²¹ pixels.
+    // Image, flow and depth: 13 bytes for each of 2²¹ pixels.
     assert!(
         said.starts_with("viewsphere: up to 8.2 GB will be written: 300 frames of 2048×1024\n"),
         "{said}"
@@ -136,7 +136,7 @@ fn pictures_of_truths_have_their_colours_and_a_scale() {
     let image = picture::read(set.join("nearness/000005.png")).unwrap();
     assert_eq!(image.size, nearness.size);
     for (pixel, nearness) in image.data.as_chunks::<3>().0.iter().zip(&nearness.data) {
-        // The sky is white, and what is near is red.
+        // The sky is white, and near surfaces are red.
         let expected = if *nearness == 0.0 { pixel == &[255; 3] } else { pixel[1] <= pixel[0] };
         assert!(expected, "{pixel:?} {nearness}");
     }
@@ -156,8 +156,8 @@ fn the_other_commands_read_a_set() {
     flo::write(folder.path().join("still.flo"), &still).unwrap();
     let still = run(&["eval", "--truth", "set/flow/000004.flo", "still.flo", "--json"]);
     let still: Value = serde_json::from_str(&still).unwrap();
-    // The pictures move as the truth says: on average no estimate is nearer to it than no motion unless it follows it, and
-    // one of the wrong sign is twice as far away.
+    // The images move as the ground truth states: on average an estimate is nearer to it than zero flow only if it
+    // follows it, and one of the wrong sign is twice as far away.
     let [found, still] = [found, still].map(|e| e["aee_px"].as_f64().unwrap());
     assert!(found < still, "{found} {still}");
     let said = run(&[
@@ -193,7 +193,7 @@ fn the_same_command_makes_the_same_set_and_spares_what_is_there() {
     again(&["--force", "--fps", "60"]).unwrap();
     assert_eq!(count(&a.path().join("set/frames")), 24);
     assert_eq!(count(a.path()), 1);
-    // What is no data set is never replaced.
+    // A folder that is not a data set is never replaced.
     fs::remove_file(a.path().join("set/poses.csv")).unwrap();
     let text = again(&["--force"]).unwrap_err();
     assert!(text.contains("which has no poses.csv"), "{text}");

@@ -49,8 +49,8 @@ fn barrel() -> Camera {
     Camera { size: SIZE, f_u: 50.0, f_v: 51.0, u_0: 31.0, v_0: 24.5, lens }
 }
 
-/// What the raw camera shows of a scene far away, a wave of directions: smooth, so that reading between pixels is exact
-/// to a gray level.
+/// The raw camera's image of a distant scene, a wave over directions: smooth, so that interpolation between pixels is
+/// exact to a gray level.
 fn shown(camera: &Camera, [u, v]: [f64; 2]) -> f64 {
     let ray = camera.ray([u, v]).unwrap();
     128.0 + 60.0 * (3.0 * ray.x / ray.z).sin() + 50.0 * (2.5 * ray.y / ray.z).cos()
@@ -74,7 +74,7 @@ fn photo(camera: &Camera, format: PixelFormat) -> Image {
     Image { size: camera.size, format, data }
 }
 
-/// A folder with a camera in each format, and pictures of it.
+/// A folder with a camera in each format, and images taken with it.
 fn files() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -103,7 +103,7 @@ fn files() -> TempDir {
     folder
 }
 
-/// Holds a result against what its camera would show.
+/// Compares a result with the image that its camera would take.
 #[track_caller]
 fn check(folder: &TempDir, picture: &str, camera: &str) {
     let image = picture::read(folder.path().join(picture)).unwrap();
@@ -126,14 +126,14 @@ fn check(folder: &TempDir, picture: &str, camera: &str) {
             match place {
                 Some(place) if !beside(place, 0.0) => {
                     let expected = scale * shown(&out, pixel);
-                    // Rounded twice, and a curve read as its chord.
+                    // Rounded twice, and a curve interpolated linearly.
                     assert!(
                         (found - expected).abs() <= 1.7 * scale,
                         "{picture} {pixel:?}: {found} {expected}"
                     );
                     seen += 1;
                 }
-                // Black begins a pixel further out.
+                // Black starts a pixel further out.
                 Some(place) if !beside(place, 1.0) => {}
                 _ => assert!(found == 0.0, "{picture} {pixel:?}: {found} where nothing is shown"),
             }
@@ -174,7 +174,7 @@ fn the_gpu_writes_the_same_pictures() {
     }
     let [cpu, gpu] = ["cpu.png", "gpu.png"].map(|name| picture::read(folder.path().join(name)).unwrap());
     assert_eq!(cpu.size, gpu.size);
-    // A place that differs by a thousandth of a pixel may be rounded to the next level.
+    // A position that differs by a thousandth of a pixel may round to the next level.
     assert!(cpu.data.iter().zip(&gpu.data).all(|(a, b)| a.abs_diff(*b) <= 1));
 }
 
@@ -220,7 +220,7 @@ fn no_input_is_overwritten() {
     let image = Image { size: SIZE, format: PixelFormat::Gray8, data: vec![90; SIZE.pixels()] };
     picture::write_png(path("000000.png"), &image).unwrap();
     let before = [fs::read(path("cam.yaml")).unwrap(), fs::read(path("000000.png")).unwrap()];
-    let expected = "expected another place than that of the input";
+    let expected = "expected a path other than that of the input";
     refused(&folder, &["--camera", "cam.yaml", "000000.png", "-o", "./000000.png"], &["-o is", expected]);
     refused(&folder, &["--camera", "cam.yaml", "*.png", "-o", "."], &["-o is .,", expected]);
     let camera = ["--camera", "cam.yaml", "000000.png", "--write-camera", "cam.yaml"];

@@ -130,7 +130,7 @@ fn at(times: &[f64]) -> Gyro {
 #[test]
 fn what_is_not_covered_is_a_fault_with_its_reason() {
     let said = |gyro: &Gyro, a, b| gyro.prev_from_cur(a, b).unwrap_err().to_string();
-    assert_eq!(said(&at(&[]), 0.0, 0.1), "no gyro sample has come");
+    assert_eq!(said(&at(&[]), 0.0, 0.1), "no gyro sample has arrived");
     let gyro = at(&[1.0, 1.01, 1.02, 1.1, 1.11]);
     let text =
         "1.000000 s to 1.120000 s is not covered by gyro samples, which reach from 1.000000 s to 1.110000 s";

@@ -1,4 +1,4 @@
-//! Time to contact while a camera comes nearer, through a distorted lens, against the truth.
+//! Time to contact during an approach, through a distorted lens, compared with the ground truth.
 
 use glam::DVec3;
 use viewsphere::PipelineConfig;
@@ -8,11 +8,11 @@ use viewsphere::sim::scenes;
 use crate::quantile::quantile;
 use crate::straight::{FlightPath, fly, true_rates_hz};
 
-/// Seconds before contact at which the sectors are looked at.
+/// Seconds before contact at which the sectors are evaluated.
 const CONTACT_S: [f64; 5] = [4.0, 3.0, 1.6, 1.0, 0.7];
 
-/// Errors of the time to contact of all sectors that show what is at least this near (1 is what lies straight ahead),
-/// relative to the truth, at each of the times.
+/// Relative errors of the time to contact, at each of the times, of all sectors that show surfaces at least this near
+/// (1 is what lies straight ahead).
 fn errors(
     world: impl Fn(f64) -> viewsphere::Result<World>,
     distance_m: f64,
@@ -68,7 +68,7 @@ fn holds(
     }
 }
 
-// What was measured is a third to a half of the bounds over all times.
+// The measured errors are a third to a half of the bounds over all times.
 
 #[test]
 fn a_frontal_wall() {
@@ -85,11 +85,11 @@ fn a_wall_at_60_degrees() {
     holds(|_| scenes::oblique_wall(130.0, 60f64.to_radians()), 130.0, 0.0, 0.02, [0.02; 5]);
 }
 
-/// A pillar 0.6 s of flight wide: two sectors at 4 s. What is behind it is 60 m further away. A pillar narrower than a
-/// sector and the flow's window shares them with what is behind it, and seems further away than it is.
+/// A pillar 0.6 s of flight wide: two sectors at 4 s. The background is 60 m further away. A pillar narrower than a
+/// sector and the flow's window shares them with the background, and seems further away than it is.
 #[test]
 fn a_pillar() {
-    // At 4 s no sector is without an edge of it, and the median was 7 to 11 %; from 3 s on it is under 4 %.
+    // At 4 s every sector contains an edge of it, and the median was 7 to 11 %; from 3 s on it is under 4 %.
     let bounds = [0.15, 0.05, 0.05, 0.05, 0.05];
     holds(|speed_m_s| scenes::pillar(130.0, 0.3 * speed_m_s), 130.0, 0.7, 0.05, bounds);
 }

@@ -1,4 +1,4 @@
-//! Worlds to fly through: that they are what their parameters say, of any seed, and stay so.
+//! Courses: for any seed they match their parameters, and they do not change.
 
 use glam::{DVec2, DVec3};
 use viewsphere::sim::course::{City, Corridor, DeadEnd, Forest, PoissonForest, Wall, Wires};
@@ -31,7 +31,7 @@ fn walls(course: &Course) -> Vec<(DVec2, DVec2, f64)> {
     course.world.surfaces.iter().filter_map(|surface| wall(surface.form())).collect()
 }
 
-/// How many are within five standard deviations of what chance gives.
+/// Whether a count is within five standard deviations of its expectation.
 fn is_likely(found: usize, expected: f64, variance: f64) -> bool {
     (found as f64 - expected).abs() <= 5.0 * variance.sqrt()
 }
@@ -51,7 +51,7 @@ fn every_course_can_be_flown_and_is_the_same_again() {
             assert_eq!(course.world.surfaces[0].form(), ground);
             let altitude_m = -course.start_ned_m.z;
             assert!(course.altitude_m[0] < altitude_m && altitude_m < course.altitude_m[1]);
-            // What is nearest at the start is the ground, or in a corridor a wall.
+            // The nearest surface at the start is the ground, or in a corridor a wall.
             let clearance_m = course.world.clearance_m(course.start_ned_m);
             assert!(clearance_m > 9.8, "{kind} {seed}: {clearance_m} m");
             before = Some(course);
@@ -67,7 +67,7 @@ fn progress_is_counted_towards_the_goal_alone() {
     for (goal_yaw_rad, expected) in [(0.0_f64, 3.0), (0.5 * std::f64::consts::PI, 4.0), (0.8_f64.asin(), 5.0)]
     {
         course.goal_yaw_rad = goal_yaw_rad;
-        // Roundings of numbers about 5.
+        // Rounding of numbers near 5.
         assert!((course.progress_m(position) - expected).abs() <= 1e-14);
     }
     assert_eq!(course.offset_m(position), None);
@@ -95,7 +95,8 @@ fn trees_stand_at_their_density_and_distance_and_not_at_the_start() {
             total += trunks.len();
             left += trunks.iter().filter(|trunk| trunk.0.y < 0.0).count();
         }
-        // The area less the half disc and more around the start. Where trees keep their distance, chance is less.
+        // The area without the half disc around the start. With a minimum distance between trees, the variance is
+        // smaller.
         let free_m2 = std::f64::consts::PI * forest.free_m.powi(2);
         let expected = 6.0 * forest.density_per_m2 * (280.0 * 160.0 - free_m2);
         assert!(is_likely(total, expected, 6.0 * forest.density_per_m2 * free_m2), "{total} of {expected}");
@@ -107,7 +108,7 @@ fn trees_stand_at_their_density_and_distance_and_not_at_the_start() {
 fn a_poisson_forest_has_the_counts_of_its_process() {
     for density_per_m2 in [1.0 / 49.0, 1.0 / 36.0, 1.0 / 25.0] {
         let forest = PoissonForest { density_per_m2, ..PoissonForest::default() };
-        // 4 × 5 fields of 25 by 24 m; the first begins with the trees' bark.
+        // 4 × 5 fields of 25 by 24 m; the first starts at the trees' bark.
         let (mut counts, mut rows) = (vec![], vec![]);
         for seed in 0..200 {
             let course = forest.course(seed).unwrap();
@@ -169,7 +170,7 @@ fn a_wall_stands_where_it_should_and_ends_before_the_course_does() {
         assert!((80.0..=100.0).contains(&middle.x) && middle.y.abs() <= 20.0 && height_m == 40.0);
         assert!((39.999..=70.001).contains(&along.length()));
         assert!(along.x.abs() <= along.y * (1.0 + 1e-9) && along.y > 0.0);
-        // 20 m are left from its farther end.
+        // 20 m remain from its further end.
         assert!((course.length_m - from.x.max(to.x) - 20.0).abs() <= 1e-9);
         assert!(course.altitude_m[1] < height_m);
     }
@@ -185,13 +186,13 @@ fn no_ray_leaves_a_corridor_to_the_side() {
         for seed in 0..4 {
             let course = corridor.course(seed).unwrap();
             let line = &course.centre_line_m;
-            // The ends are open, and aslant.
+            // The ends are open, and oblique.
             let closed_m = -20.0..350.0;
             let stays = |eye: DVec3, direction: DVec3, far_m: f64| {
                 let hit = course.world.hit(eye, direction);
                 let far_m = hit.map_or(far_m, |hit| hit.distance_m.min(far_m));
                 let places = (1..=20).map(|step| eye + direction * (far_m * f64::from(step) / 20.0));
-                // The chords of both walls and middle leave their curves by 0.12 m at most.
+                // The chords of walls and centre line deviate from their curves by 0.12 m at most.
                 let inside = |place: DVec3| course.offset_m(place).unwrap().abs() <= width_m / 2.0 + 0.2;
                 places.take_while(|place| closed_m.contains(&place.x)).all(inside)
             };
@@ -202,7 +203,7 @@ fn no_ray_leaves_a_corridor_to_the_side() {
                     let direction = DVec2::from_angle(f64::from(2 * step).to_radians()).extend(0.0);
                     assert!(stays(eye, direction, 5.0 * width_m), "{seed}: from {eye} to {direction}");
                 }
-                // Where two links meet.
+                // At the joints of links.
                 for (joint, _, _) in walls(&course) {
                     let to_joint = joint.extend(-10.0) - eye;
                     if to_joint.length() < 2.0 * width_m {
@@ -224,13 +225,13 @@ fn a_corridor_is_as_wide_and_as_bent_as_it_should_be_and_knows_its_middle() {
         assert!(line[0].x <= -30.0 && line[line.len() - 1].x >= 360.0);
         for places in line.windows(3) {
             let [a, b, c] = [places[1] - places[0], places[2] - places[1], places[2] - places[0]];
-            // One over the radius of the circle through three places.
+            // The curvature: the inverse radius of the circle through three points.
             let curvature = 2.0 * a.perp_dot(b).abs() / (a.length() * b.length() * c.length());
             assert!(curvature <= 1.0 / 35.0, "{curvature}");
             sharpest = sharpest.max(curvature);
             let right = c.normalize().perp();
             let clearance_m = course.world.clearance_m(places[1].extend(-15.0));
-            // A chord of 4.8 m leaves a radius of 25 m by 0.12 m.
+            // A chord of 4.8 m deviates from a radius of 25 m by 0.12 m.
             assert!((9.85..=10.0001).contains(&clearance_m), "{clearance_m}");
             for offset_m in [-9.0, -0.5, 0.5, 9.0] {
                 let found = course.offset_m((places[1] + right * offset_m).extend(-3.0)).unwrap();
@@ -300,7 +301,7 @@ fn what_is_skipped_as_too_far_is_never_the_nearest() {
         let course = kind.course(1).unwrap();
         for i in 0..500 {
             let i = f64::from(i);
-            // Some are behind the ground, and some in a house or tree.
+            // Some are below the ground, and some in a house or tree.
             let place =
                 DVec3::new(i * 0.7 - 30.0, 60.0 * (i * 0.7).sin(), -40.0 * (i * 0.3).sin().abs() + 2.0);
             let all = course.world.surfaces.iter().map(|surface| surface.distance_m(place));
@@ -309,7 +310,7 @@ fn what_is_skipped_as_too_far_is_never_the_nearest() {
     }
 }
 
-/// A change of a generator changes what was measured in its worlds: it has to be meant.
+/// A change of a generator invalidates what was measured in its worlds, so it must be deliberate.
 #[test]
 fn the_courses_of_a_seed_stay_what_they_are() {
     let sums: Vec<String> = CourseKind::all()
@@ -320,7 +321,7 @@ fn the_courses_of_a_seed_stay_what_they_are() {
                 let place = DVec3::new(12.0 * f64::from(i), 7.0 * f64::from(i % 5) - 14.0, -10.0);
                 course.world.clearance_m(place)
             });
-            // Sines differ between machines by a last bit.
+            // Sines differ between machines in the last bit.
             let sum: f64 = clearances.sum();
             format!("{kind} {} {:.6} {sum:.6}", course.world.surfaces.len(), course.length_m)
         })

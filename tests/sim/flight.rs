@@ -1,4 +1,4 @@
-//! The closed loop: it flies, it repeats itself bit for bit, and it says within a frame what has gone wrong.
+//! The closed loop: it flies, it is deterministic bit for bit, and it reports a fault within a frame.
 
 use viewsphere::Backend;
 use viewsphere::sim::flight::{Body, Fault, Flight, FlightConfig, Outcome, Record, Sensor, Summary};
@@ -17,7 +17,7 @@ fn config(sensor: Sensor) -> FlightConfig {
     FlightConfig { sensor, ..FlightConfig::default() }
 }
 
-/// Flies for so many frames at most.
+/// Flies for at most `frames` frames.
 fn records(backends: [Backend; 2], course: &Course, config: &FlightConfig, frames: usize) -> Vec<Record> {
     let mut flight = Flight::new(backends, course, config).unwrap();
     let mut records = Vec::new();
@@ -54,14 +54,14 @@ fn what_sees_flies_past_the_wall_and_what_does_not_hits_it() {
 
 #[test]
 fn each_policy_but_the_potential_field_flies_a_corridor_of_true_depth() {
-    // A potential field swings from wall to wall until it touches one.
+    // A potential field oscillates between the walls until it touches one.
     for policy in [Policy::Balance, Policy::Heading, Policy::Arc] {
         for danger in [Danger::Nearness, Danger::Divergence, Danger::Blend] {
             let mut config = config(Sensor::Depth);
             (config.steer.policy, config.steer.danger) = (policy, danger);
             let records = records(CPU, &course("corridor", 2), &config, 150);
             let last = records.last().unwrap();
-            // Five seconds without touching a wall; the corridor turns by more than its width in that time.
+            // Five seconds without touching a wall; the corridor curves by more than its width in that time.
             assert!(records.len() == 150 && last.progress_m > 45.0, "{policy:?} {danger:?}: {last:?}");
         }
     }
@@ -85,7 +85,7 @@ fn pictures_tell_the_direction_of_motion_and_the_time_to_contact() {
     let records = records(CPU, &course("wall:incidence=0:offset=0", 1), &config, 240);
     let mut errors: Vec<f64> = records.iter().skip(5).filter_map(|r| r.heading_error_rad).collect();
     errors.sort_by(f64::total_cmp);
-    // 0.2° in the median is usual.
+    // A median of 0.2° is usual.
     assert!(errors.len() > 100 && errors[errors.len() / 2] < 0.02, "{errors:?}");
     let near = records.iter().filter(|r| r.true_contact_s.is_some_and(|time| (0.7..3.0).contains(&time)));
     let mut off: Vec<f64> =
@@ -122,7 +122,7 @@ fn each_fault_is_said_within_a_frame_and_passes() {
         assert!(records[15].invalid.is_some() || records[16].invalid.is_some(), "{fault}: {said:?}");
         assert_eq!(records[35].invalid, None, "{fault}");
         let sources: Vec<Source> = records.iter().map(|record| record.source).collect();
-        // Held at first; when the fault has been there for as long as is held, the wings are levelled.
+        // Held at first; if the fault lasts longer than the hold time, the wings are levelled.
         assert!(sources.contains(&Source::Held) || sources[0..].contains(&Source::Recovery), "{fault}");
         assert_eq!(sources[35], Source::Cue, "{fault}");
     }
@@ -147,7 +147,7 @@ fn a_lost_device_is_said_and_brought_back_once() {
     assert_eq!(records.len(), 36);
     let lost = |frame: usize| records[frame].invalid.as_ref().is_some_and(|why| why.contains("lost"));
     assert!((lost(15) || lost(16)) && records[20..24].iter().all(|r| r.invalid.is_none()));
-    // The engine opens it once; from then on the aircraft flies as it is to without a cue.
+    // The engine reopens the device once; after that the aircraft flies without a cue.
     assert!((25..36).all(lost) && records[35].source == Source::Recovery);
 }
 

@@ -1,5 +1,5 @@
-//! The simulator, and what flies in it: its truth, its renderer, courses and vehicles, the pipeline on rendered pictures,
-//! and whole flights.
+//! The simulator and its users: ground truth, renderer, courses and vehicles, the pipeline on rendered images, and
+//! whole flights.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod approach;

@@ -1,4 +1,4 @@
-//! What the pipeline measures in flight, held against the true flow on the view sphere.
+//! The flow that the pipeline measures in flight, compared with the true flow on the view sphere.
 
 use viewsphere::Backend;
 use viewsphere::sim::CourseKind;
@@ -7,7 +7,7 @@ use viewsphere::sim::flight::{Flight, FlightConfig, Measured, Sensor};
 /// Two seconds of flight.
 const FRAMES: usize = 60;
 
-/// Flies for so many frames, 320 by 240 pixels through a lens with noise, and gives those that were measured.
+/// Flies for `FRAMES` frames, 320 by 240 pixels through a lens with noise, and returns the measured ones.
 fn measured(world: &str, seed: u64) -> Vec<Measured> {
     let config = FlightConfig { measure: true, ..FlightConfig::default() };
     assert!(config.sensor == Sensor::Images && config.renderer.noise_levels > 0.0);

@@ -1,4 +1,4 @@
-//! The pipeline: both executors alike, and a reason for every cue that is not to be used.
+//! The pipeline: both backends agree, and every invalid cue has a reason.
 
 use glam::DVec3;
 use viewsphere::camera::{Camera, Lens};
@@ -38,7 +38,7 @@ fn with_gyro() -> PipelineConfig {
     PipelineConfig { gyro: Some(GyroConfig::default()), ..PipelineConfig::default() }
 }
 
-/// Samples that cover one second, but for those that a test takes out.
+/// Samples that cover one second, except those that `keep` rejects.
 fn gyro(pipeline: &mut Pipeline, keep: impl Fn(f64) -> bool) {
     for i in 0..200 {
         let time_s = f64::from(i) * 0.005;
@@ -78,7 +78,7 @@ fn both_executors_say_the_same() {
             assert!(heading.direction.angle_between(cpu_heading.direction) < 1e-3);
             let mut compared = 0;
             for (found, expected) in found.sectors.iter().zip(&expected.sectors) {
-                // A cell may be trusted just enough on one side and not on the other: quantiles then are another cell's.
+                // A cell may be just reliable enough on one side only: quantiles then are another cell's.
                 if found.coverage != expected.coverage || !found.is_known() {
                     continue;
                 }
@@ -283,13 +283,13 @@ fn frames_in_flight_keep_their_times() {
     }
 }
 
-/// A camera that has stopped giving new pictures looks like a world at rest. When it goes on, what it shows is held against
-/// when the last picture was new.
+/// A camera that repeats its last image looks like a world at rest. When it resumes, its image is compared with the
+/// time of the last new one.
 #[test]
 fn a_picture_that_is_shown_again_makes_no_cue() {
     let camera = small();
     let frames = frames(&camera, 6);
-    // Over a tenth of a second the camera turns so far that little of the view is seen twice.
+    // Over a tenth of a second the camera rotates so far that both views share little.
     let config = PipelineConfig { least_coverage: 0.05, ..with_gyro() };
     let mut pipeline = good(Pipeline::new(Backend::Cpu, &camera, &config));
     gyro(&mut pipeline, |_| true);
@@ -306,11 +306,11 @@ fn a_picture_that_is_shown_again_makes_no_cue() {
     );
     assert_eq!((&cues[2].0, &cues[5].0), (&None, &None));
     assert!(cues[5].1.is_some_and(|interval_s| (interval_s - 0.1).abs() < 1e-9), "{cues:?}");
-    // A tenth of a second on it is a little nearer, not three times as near.
+    // A tenth of a second later it is a little nearer, not three times as near.
     assert!((cues[5].2 / cues[2].2 - 1.0).abs() < 0.3, "{cues:?}");
 }
 
-/// For however long it is shown again, that is what is wrong; but frames that do not come are told apart from it.
+/// However long an image is repeated, that stays the reason; but missing frames are distinguished from it.
 #[test]
 fn a_picture_that_is_shown_for_long_stays_the_reason() {
     let camera = small();
@@ -322,12 +322,12 @@ fn a_picture_that_is_shown_for_long_stays_the_reason() {
     for frame in 1..20 {
         assert_eq!(reason(0, f64::from(frame) / 30.0), Some(Invalid::Frozen), "{frame}");
     }
-    // A gap with the same picture on both sides is a gap, and so is one without a number.
+    // A gap with the same image on both sides is a gap, and so is a time that is NaN.
     for time_s in [5.0, 4.0, f64::NAN] {
         assert!(matches!(reason(0, time_s), Some(Invalid::Interval { .. })), "{time_s}");
     }
     assert!(matches!(reason(0, 6.0), Some(Invalid::Interval { .. })));
     assert_eq!(reason(0, 6.1), Some(Invalid::Frozen));
-    // The first new picture makes no pair with one of so long ago.
+    // The first new image is not paired with one from long ago.
     assert!(matches!(reason(1, 6.5), Some(Invalid::Interval { .. })));
 }

@@ -1,4 +1,4 @@
-//! The simulator's camera on kernels, against the renderer in double precision and against the truth.
+//! The renderer's kernels, compared with the renderer in double precision and with the ground truth.
 
 use glam::{DMat3, DVec3};
 use viewsphere::camera::{Camera, FRD_FROM_CAMERA, Lens, Pose, world_from_body};
@@ -74,7 +74,7 @@ fn quantile(values: &mut [f64], share: f64) -> f64 {
     values[((values.len() - 1) as f64 * share) as usize]
 }
 
-/// Pixels around which nothing but one smooth surface is seen.
+/// Pixels around which a single smooth surface is visible.
 fn smooth(nearness: &[f32], width: usize) -> impl Fn(usize) -> bool {
     move |i: usize| {
         let (x, y) = (i % width, i / width);
@@ -112,12 +112,12 @@ fn pictures_are_those_of_the_renderer_in_double_precision() {
                 inside.len(),
                 edges.len()
             );
-            // Rounding to whole levels falls otherwise where single precision differs.
+            // Rounding to whole levels differs where single precision does.
             assert!(inside.len() > 10_000 && mean < 0.02 && p99 <= 1.0, "{name}: {mean} {p99}");
-            // A share of a pixel by four samples is off from that by sixteen by a tenth in the mean, of a contrast of 40
-            // levels, where an edge passes through the pixel; it does in half of those that are near one.
+            // A coverage by four samples differs from that by sixteen by a tenth on average, at a contrast of 40
+            // levels, where an edge passes through the pixel; it does in half of the pixels near one.
             assert!(mean_edges < 2.0 && edges99 <= 20.0, "{name}: {mean_edges} {edges99}");
-            // Of what is thinner than the samples are apart.
+            // Objects thinner than the sample spacing.
             assert!(wrong < 20, "{name}: {wrong}");
         }
     }
@@ -152,7 +152,7 @@ fn the_next_frame_read_along_the_true_flow_is_this_frame() {
     }
 }
 
-/// A texture too fine for the pixels would come out otherwise from a mean over each pixel than from its centre.
+/// For a texture too fine for the pixels the mean over each pixel would differ from the value at its centre.
 #[test]
 fn pictures_are_free_of_aliasing() {
     let size = Size::new(160, 120);
@@ -164,7 +164,7 @@ fn pictures_are_free_of_aliasing() {
         let gray = |u: f64, v: f64| {
             let direction = pose.world_from_camera * camera.ray([u, v]).unwrap();
             let hit = world.hit(pose.position_world, direction);
-            // Of the pixel's size, not of the samples'.
+            // With the pixel's size, not the samples'.
             world.gray(hit.as_ref(), direction, 1.0 / camera.f_u)
         };
         let square = |i: usize| {
@@ -181,7 +181,7 @@ fn pictures_are_free_of_aliasing() {
     }
 }
 
-/// A far wall is passed by in steps of a fraction of a pixel: what differs from picture to picture must be the gradient
+/// A far wall is passed in steps of a fraction of a pixel: the difference between images must equal the gradient
 /// times the step, everywhere and always.
 #[test]
 fn a_far_wall_moves_by_less_than_a_pixel_without_a_jerk() {
@@ -196,7 +196,7 @@ fn a_far_wall_moves_by_less_than_a_pixel_without_a_jerk() {
         let first = at(0);
         for step in 1..=10 {
             let moved = at(step);
-            // Least squares over the picture (Lucas and Kanade): the gradient is that of the mean of both.
+            // Least squares over the image (Lucas and Kanade): the gradient is that of both images' mean.
             let (mut product, mut square) = (0.0, 0.0);
             for i in (320..320 * 239).filter(|i| (1..319).contains(&(i % 320))) {
                 let gradient = |image: &[u8]| (f64::from(image[i + 1]) - f64::from(image[i - 1])) / 2.0;
@@ -210,7 +210,7 @@ fn a_far_wall_moves_by_less_than_a_pixel_without_a_jerk() {
             // too large.
             assert!((1.0..1.1).contains(&(found / expected)), "{expected}: {found}");
         }
-        // A whole pixel on, every pixel is its neighbour, but for what is seen at a slightly different slant.
+        // A whole pixel further, every pixel equals its neighbour, up to a slightly different slant.
         let moved = at(10);
         let pixels = (0..320 * 240).filter(|i| i % 320 < 319);
         let off: Vec<f64> = pixels.map(|i| f64::from(moved[i].abs_diff(first[i + 1]))).collect();
@@ -222,7 +222,7 @@ fn a_far_wall_moves_by_less_than_a_pixel_without_a_jerk() {
 
 #[test]
 fn noise_has_its_deviation_and_its_seed() {
-    // Gray is far from both ends of the range where there is only sky.
+    // The sky's gray is far from both ends of the range.
     let world = World::new(Vec::new());
     for backend in backends() {
         let mut clean = renderer(&backend, SIZE, &world, &CLEAN);
@@ -238,7 +238,7 @@ fn noise_has_its_deviation_and_its_seed() {
         for (pair, expected) in [(difference(&with, &without), 4.0), (difference(&with, &other), 8.0)] {
             let mean = pair.iter().sum::<f64>() / pair.len() as f64;
             let variance = pair.iter().map(|d| d * d).sum::<f64>() / pair.len() as f64;
-            // Rounding adds a twelfth to each picture.
+            // Rounding adds a variance of 1/12 to each image.
             assert!(mean.abs() < 0.05 && (variance - expected - 1.0 / 6.0).abs() < 0.25, "{mean} {variance}");
         }
     }
@@ -294,7 +294,7 @@ fn what_cannot_be_seen_is_an_error_or_black() {
     }
     let sideways = World { up_world: DVec3::NAN, ..world.clone() };
     assert!(Renderer::new(Backend::Cpu, &camera(SIZE), &sideways, &CLEAN).is_err());
-    // Folds at a radius of 1.05, well inside this wide a picture.
+    // The lens map folds at a radius of 1.05, well inside this wide image.
     let lens = Lens::new(&[-0.3, 0.0, 0.0, 0.0]).unwrap();
     let folding = Camera { f_u: 80.0, f_v: 80.0, lens, ..camera(SIZE) };
     let mut renderer = Renderer::new(Backend::Cpu, &folding, &world, &CLEAN).unwrap();

@@ -1,8 +1,8 @@
-//! Pictures read between their pixels.
+//! Interpolation of images.
 
 use viewsphere::frame::Image;
 
-/// Catmull–Rom between the pixels; `None` within two pixels of the border.
+/// Catmull–Rom interpolation; `None` within two pixels of the border.
 pub(crate) fn sample(image: &Image, at: [f64; 2]) -> Option<f64> {
     let (width, height) = (image.size.width as usize, image.size.height as usize);
     let inside = |c: f64, side: usize| c >= 2.0 && c <= side as f64 - 4.0;

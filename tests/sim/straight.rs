@@ -1,4 +1,4 @@
-//! Flights through worlds whose truth is known, as a pipeline sees them.
+//! Flights through worlds with known ground truth, as seen by a pipeline.
 
 use glam::{DMat3, DQuat, DVec3};
 use viewsphere::camera::{Camera, Lens, Pose};
@@ -8,13 +8,13 @@ use viewsphere::sim::{RayTable, World, reference_render};
 use viewsphere::sphere::Sectors;
 use viewsphere::{Backend, Cue, Pipeline, PipelineConfig};
 
-/// Frames a second.
+/// Frame rate.
 pub(crate) const RATE_HZ: f64 = 30.0;
 
-/// A flight straight on, the camera turning steadily.
+/// A straight flight with constant rotation of the camera.
 #[derive(Clone, Copy)]
 pub(crate) struct FlightPath {
-    /// Where the camera is at time 0, its axes along the world's.
+    /// The camera's position at time 0, its axes along the world's.
     pub(crate) start_world: DVec3,
     pub(crate) velocity_world: DVec3,
     /// In the camera's frame.
@@ -35,13 +35,13 @@ impl FlightPath {
     }
 }
 
-/// A wide lens of the usual barrel distortion.
+/// A wide-angle lens with typical barrel distortion.
 pub(crate) fn camera() -> Camera {
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0]).unwrap_or(Lens::NONE);
     Camera { size: Size::new(640, 480), f_u: 340.0, f_v: 340.0, u_0: 322.5, v_0: 236.0, lens }
 }
 
-/// Flies for so many frames that end at a time, and shows each cue with the camera's pose.
+/// Flies a number of frames that end at a given time, and passes on each cue with the camera's pose.
 pub(crate) fn fly(
     config: PipelineConfig,
     world: &World,
@@ -72,7 +72,7 @@ pub(crate) fn fly(
     }
 }
 
-/// The truth of each sector's median nearness rate, 1/s; none where less than half of it is something.
+/// The true median nearness rate of each sector, 1/s; `None` where less than half of it shows a surface.
 pub(crate) fn true_rates_hz(
     world: &World,
     flight: &FlightPath,

@@ -1,4 +1,4 @@
-//! The simulator's truth against finite differences and against its own pictures.
+//! The ground truth, compared with finite differences and with rendered images.
 
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
@@ -28,7 +28,7 @@ fn worlds() -> Vec<(&'static str, World)> {
     ]
 }
 
-/// A pose somewhat off the start.
+/// A pose slightly off the start.
 fn off(step: f64) -> Pose {
     let turn = DMat3::from_rotation_y(0.06 * step) * DMat3::from_rotation_x(-0.03 * step);
     Pose {
@@ -105,9 +105,9 @@ fn shapes_that_are_none_are_errors() {
     assert!(scenes::frontal_wall(f64::NAN).is_err());
 }
 
-/// A camera that has moved for a time at constant rates in its own frame.
+/// The pose of a camera after moving for a time at constant rates in its own frame.
 fn after(pose: &Pose, motion: &Twist, time_s: f64) -> Pose {
-    // Near enough to a constant velocity for a difference that is symmetric in time.
+    // Close enough to a constant velocity for a difference that is symmetric in time.
     Pose {
         position_world: pose.position_world + pose.world_from_camera * motion.velocity_m_s * time_s,
         world_from_camera: pose.world_from_camera
@@ -126,7 +126,7 @@ fn flow_and_divergence_are_those_of_finite_differences() {
         for bearing in [[0.02, 0.03], [-0.4, 0.2], [0.3, -0.35], [0.05, 0.45]] {
             let p = DVec3::new(bearing[0], bearing[1], 1.0).normalize();
             let seen = world.seen(&pose, p);
-            // The bearing of the point seen, a moment later and a moment before.
+            // The bearing of the same point, a moment later and a moment earlier.
             let direction = pose.world_from_camera * p;
             let bearing_at = |t: f64| {
                 let later = after(&pose, &MOTION, t);
@@ -139,7 +139,7 @@ fn flow_and_divergence_are_those_of_finite_differences() {
             let difference = (bearing_at(dt) - bearing_at(-dt)) / (2.0 * dt);
             let flow = seen.flow_rad_s(&MOTION);
             assert!((flow - difference).length() < 1e-8, "{name}: {flow} {difference}");
-            // Divergence: the flow along two directions across the bearing, on either side.
+            // Divergence: the flow along two directions perpendicular to the bearing, on either side.
             let (e1, e2) = p.any_orthonormal_pair();
             let slope = |e: DVec3| {
                 let flow_at = |s: f64| world.seen(&pose, (p + s * e).normalize()).flow_rad_s(&MOTION).dot(e);
@@ -191,15 +191,15 @@ fn the_next_frame_read_along_the_true_flow_is_this_frame() {
                 "{name}: {mean:.2} mean, {medians:.2?} median gray levels along the flow and without it"
             );
             assert!(count > 40_000, "{name}: {count}");
-            // Half a gray level is rounding; the rest is what the interpolation loses of details of three pixels, and
-            // octaves that come into sight.
+            // Half a gray level is rounding; the rest is what interpolation loses of details of three pixels, and
+            // octaves that become visible.
             assert!(medians[0] < 1.5 && mean < 2.5, "{name}: {mean} {medians:?}");
             assert!(medians[1] > 4.0 * medians[0], "{name}: {medians:?}");
         }
     }
 }
 
-/// A texture too fine for the pixels would come out otherwise from a mean over each pixel than from its centre.
+/// For a texture too fine for the pixels the mean over each pixel would differ from the value at its centre.
 #[test]
 fn pictures_are_free_of_aliasing() {
     let camera = camera(Size::new(160, 120), &BARREL);
@@ -210,7 +210,7 @@ fn pictures_are_free_of_aliasing() {
         let gray = |u: f64, v: f64| {
             let direction = pose.world_from_camera * camera.ray([u, v]).unwrap();
             let hit = world.hit(pose.position_world, direction);
-            // Of the pixel's size, not of the samples'.
+            // With the pixel's size, not the samples'.
             world.gray(hit.as_ref(), direction, 1.0 / camera.f_u)
         };
         let mut differences: Vec<f64> = Vec::new();
@@ -236,7 +236,7 @@ fn nearness_is_that_of_the_rays_and_pictures_are_the_same_twice() {
         assert_eq!(view, reference_render(&world, &rays, &off(1.0)), "{name}");
         for (i, nearness) in view.nearness_per_m.data.iter().enumerate() {
             let bearing = rays.bearing(i as u32 % 97, i as u32 / 97).unwrap();
-            // Against all surfaces, where the picture knows which ones can be met.
+            // With all surfaces, where the renderer knows which ones can be met.
             assert_eq!(*nearness, world.seen(&off(1.0), bearing).nearness_per_m as f32, "{name} {i}");
         }
         assert_ne!(view.image, reference_render(&world, &rays, &START).image, "{name}");
@@ -250,7 +250,7 @@ fn nearness_is_that_of_the_rays_and_pictures_are_the_same_twice() {
 
 #[test]
 fn where_the_lens_shows_nothing_it_is_black_and_unknown() {
-    // Folds at a radius of 1.05, well inside this wide a picture.
+    // The lens map folds at a radius of 1.05, well inside this wide image.
     let folding = Camera { f_u: 40.0, f_v: 40.0, ..camera(Size::new(160, 120), &[-0.3, 0.0, 0.0, 0.0]) };
     let rays = RayTable::new(&folding).unwrap();
     let view = reference_render(&scenes::frontal_wall(2.0).unwrap(), &rays, &START);
@@ -269,7 +269,7 @@ fn what_a_pillar_covers_has_no_flow() {
     let flow = displacement(&world, &camera, &rays, &START, &aside).unwrap();
     let row = &flow.data[60 * 160..61 * 160];
     let hidden: Vec<usize> = (0..160).filter(|x| !FlowField::is_known(row[*x])).collect();
-    // The camera goes to the right, so the pillar goes to the left, by 7 pixels more than what is behind it.
+    // The camera moves right, so the pillar moves left, by 7 pixels more than the background.
     assert!((5..=9).contains(&hidden.len()) && hidden.iter().all(|x| *x < 80), "{hidden:?}");
 }
 
@@ -288,7 +288,7 @@ proptest! {
             prop_assert!(hit.distance_m > 0.0 && hit.distance_m.is_finite());
             prop_assert!((hit.normal_world.length() - 1.0).abs() < 1e-9);
             prop_assert!(hit.normal_world.dot(direction) <= 0.0);
-            // From just before the surface it is just ahead.
+            // Just in front of the surface it is just ahead.
             let near = world.hit(origin + direction * (hit.distance_m * (1.0 - 1e-6)), direction).unwrap();
             prop_assert!((near.distance_m - hit.distance_m * 1e-6).abs() < 1e-6 * (1.0 + hit.distance_m));
             let gray = world.gray(Some(&hit), direction, 1e-3);

@@ -1,4 +1,4 @@
-//! What is left of the camera's turn in the flow on the view sphere.
+//! The residual rotation in the flow on the view sphere.
 
 use glam::DVec3;
 use viewsphere::PipelineConfig;
@@ -18,7 +18,7 @@ fn config(derotation: Derotation) -> PipelineConfig {
     }
 }
 
-/// The flow of every pixel on the sphere, in radians a frame.
+/// The flow of every pixel on the sphere, in radians per frame.
 fn spherical_flows(field: &[f32], size: Size) -> impl Iterator<Item = (DVec3, [f64; 2])> {
     let stride = size.stride();
     (0..size.height as usize).flat_map(move |y| {
@@ -29,13 +29,13 @@ fn spherical_flows(field: &[f32], size: Size) -> impl Iterator<Item = (DVec3, [f
     })
 }
 
-/// Whether the cell of a pixel is trusted.
+/// Whether the flow of a pixel's cell is reliable.
 fn trusted(looming: &[f32], [x, y]: [f64; 2], size: Size) -> bool {
     let stride = Size::new(size.width.div_ceil(8), 1).stride();
     looming[(4 * (y as usize / 8) + 3) * stride + x as usize / 8] >= 0.1
 }
 
-/// The mean divergence of the trusted cells of each sector, with its sign, 1/s.
+/// The signed mean divergence of the reliable cells of each sector, 1/s.
 fn mean_divergences_hz(looming: &[f32], ideal: &Camera, grid: &Grid) -> Vec<f64> {
     let cells = Size::new(ideal.size.width.div_ceil(8), ideal.size.height.div_ceil(8));
     let mut sums = vec![(0.0, 0.0); grid.len()];
@@ -53,7 +53,7 @@ fn mean_divergences_hz(looming: &[f32], ideal: &Camera, grid: &Grid) -> Vec<f64>
     sums.into_iter().filter(|(_, count)| *count > 0.0).map(|(sum, count)| sum / count).collect()
 }
 
-/// Degrees a second about the camera's axes: pitch, yaw, roll.
+/// Rotation in degrees per second about the camera's axes: pitch, yaw, roll.
 fn turning(degrees_s: [f64; 3], velocity_world: DVec3) -> FlightPath {
     let omega_rad_s = DVec3::from_array(degrees_s.map(f64::to_radians));
     FlightPath { start_world: DVec3::ZERO, velocity_world, omega_rad_s }
@@ -81,7 +81,7 @@ fn a_turn_alone_leaves_next_to_nothing() {
         });
         let rms_px = (squares / f64::from(pixels)).sqrt();
         let rms = |values: &[f64]| (values.iter().map(|d| d * d).sum::<f64>() / values.len() as f64).sqrt();
-        // The upper quantile of what is positive, and the mean with its sign.
+        // The upper quantile of the positive part, and the signed mean.
         let (divergence_hz, mean_hz) = (rms(&divergences), rms(&means));
         println!(
             "{degrees_s:?} °/s: {rms_px:.4} px, {divergence_hz:.4} and {mean_hz:.4} /s, {pixels} pixels, {} sectors",
@@ -95,7 +95,7 @@ fn a_turn_alone_leaves_next_to_nothing() {
     }
 }
 
-/// Median and 90th percentile of the error of the flow that moving along makes, in pixels.
+/// Median and 90th percentile of the error of the translational flow, in pixels.
 fn translational_error_px(derotation: Derotation, degrees_s: [f64; 3]) -> [f64; 2] {
     let world = world();
     let flight = turning(degrees_s, DVec3::new(0.0, 0.0, 10.0));

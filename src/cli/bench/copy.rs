@@ -1,4 +1,4 @@
-//! How fast bytes can be moved at all.
+//! The speed of plain copies in memory: the upper bound of a kernel's throughput.
 
 use rayon::prelude::*;
 
@@ -8,12 +8,12 @@ use crate::gpu::Gpu;
 use crate::quantile::median;
 
 const ROUNDS: usize = 9;
-/// Bytes to copy in a round, so that it takes much longer than to begin it.
+/// Bytes copied per round: enough that the copy takes much longer than its launch.
 const ROUND: usize = 64 << 20;
-/// Of both buffers on the CPU; a thread takes one at a time.
+/// Values per chunk; each thread copies one chunk at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Gigabytes a second, read and written, of copies between two buffers of this many values on the GPU.
+/// The throughput of copies between two GPU buffers of `len` values each, bytes read plus bytes written, in GB/s.
 pub(super) fn gpu(gpu: &Gpu, len: usize) -> Result<f64> {
     let size = 4 * len as u64;
     let buffer = |label| {
@@ -43,7 +43,7 @@ pub(super) fn gpu(gpu: &Gpu, len: usize) -> Result<f64> {
     Ok(rate(len, copies, times))
 }
 
-/// The same between two slices in main memory, on all threads.
+/// The throughput of copies between two slices of `len` values in main memory, on all threads, in GB/s.
 pub(super) fn cpu(len: usize) -> f64 {
     let (from, mut to) = (vec![1.0_f32; len], vec![0.0_f32; len]);
     let copies = copies(len);

@@ -16,12 +16,12 @@ use crate::plan::{BufId, Plan};
 use crate::quantile::{nearest_rank, sorted};
 use crate::stream::{StreamConfig, TimeSource};
 
-/// Frames of the made-up scene, played forth and back.
+/// Frames of the synthetic scene, played forwards and backwards.
 const FRAMES: u32 = 6;
-/// Frames before the clock counts.
+/// Frames before the measurement begins.
 const WARM_UP: u32 = 4;
 
-/// Everything measured for one backend and size.
+/// The figures of one backend at one frame size.
 #[derive(Debug, Serialize)]
 pub(super) struct BenchFigures {
     pub(super) backend: String,
@@ -30,26 +30,26 @@ pub(super) struct BenchFigures {
     pub(super) frames: u32,
     pub(super) startup: Startup,
     pub(super) frame_ms: Times,
-    /// Of the engine's buffers.
+    /// The total size of the engine's buffers.
     pub(super) buffer_bytes: u64,
-    /// Bytes read and written by a plain copy, a second.
+    /// The throughput of a plain copy, bytes read plus bytes written.
     pub(super) copy_gb_s: f64,
-    /// Which clock the kernels' times are from: `gpu`, `host`, or `none` where the device has none.
+    /// The clock behind the kernels' times: `gpu`, `host`, or `none` where the device has none.
     pub(super) clock: &'static str,
     pub(super) kernels: Vec<KernelFigures>,
 }
 
-/// What is done once.
+/// Costs paid once.
 #[derive(Debug, Serialize)]
 pub(super) struct Startup {
-    /// Buffers, pipelines and bind groups.
+    /// Creating buffers, pipelines and bind groups.
     pub(super) engine_ms: f64,
-    /// The first frame and the first pair, with what the driver puts off until then.
+    /// The first frame and the first pair, including the work that the driver defers until then.
     pub(super) first_frame_ms: f64,
     pub(super) first_pair_ms: f64,
 }
 
-/// Times of something that was done many times.
+/// Statistics of repeated measurements, in milliseconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Times {
     pub(super) median: f64,
@@ -57,7 +57,7 @@ pub(super) struct Times {
     pub(super) min: f64,
 }
 
-/// All steps of one kernel in a frame, together.
+/// The figures of one kernel: all of its steps in a frame, summed.
 #[derive(Debug, Serialize)]
 pub(super) struct KernelFigures {
     pub(super) kernel: &'static str,
@@ -102,7 +102,7 @@ pub(super) fn measure(
     let mut engine = Engine::new(backend.clone(), size, &timed_config)?;
     let (clock, mut kernels) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     drop(engine);
-    // Kernels that only an option uses: once more with all options, for those that are not measured yet.
+    // Kernels that only an option uses: measured in a second run with every option on.
     let every_option = Config { initial_flow: true, certainty: true, confidence: true, ..timed_config };
     let mut engine = Engine::new(backend.clone(), size, &every_option)?;
     let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
@@ -128,7 +128,7 @@ fn kernels_of(
     frames: u32,
     copy_gb_s: f64,
 ) -> Result<(&'static str, Vec<KernelFigures>)> {
-    // Kernels in the order of their first step, and of each the sums over a frame, frame by frame.
+    // Kernels in the order of their first step, each with its summed time per frame.
     let mut sums: Vec<(&'static str, Vec<f64>)> = Vec::new();
     for number in 0..1 + WARM_UP + frames {
         engine.process(&played(images, number).frame()?)?;
@@ -162,9 +162,9 @@ fn kernels_of(
     Ok((clock, figures.collect()))
 }
 
-/// Of each kernel, its steps in a frame and the bytes of what they read and write.
+/// Per kernel, the number of its steps in a frame and the bytes that they read and write.
 ///
-/// Levels share buffers, so what is read is as large as what was last written there, not as large as the buffer.
+/// Levels share buffers, so an input counts with the size last written to it, not with the size of its buffer.
 fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
     let mut written: HashMap<BufId, usize> = HashMap::new();
     let mut moved = HashMap::new();
@@ -186,7 +186,7 @@ fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
     moved
 }
 
-/// Values of the plan's largest buffer.
+/// The length of the plan's largest buffer, in values.
 fn largest(plan: &Plan) -> usize {
     plan.bufs.iter().map(|buf| buf.len).max().unwrap_or(1)
 }
@@ -232,9 +232,9 @@ mod tests {
         let algorithm = Algorithm::from(Farneback { levels: 1, ..Farneback::default() });
         let plan = flow::plan(&algorithm, size, PixelFormat::Gray8, FlowOptions::default()).unwrap();
         let moved = moved(&plan);
-        // A frame of bytes in, a plane of f32 out.
+        // One frame of u8 in, one plane of f32 out.
         assert_eq!(moved["luma"], (1, 64 * 64 * 5));
-        // Two levels, each with a plane in, three out, and its weights.
+        // Two levels, each reading one plane and its weights and writing three planes.
         let step = plan.ingest[0].iter().find(|step| step.kernel.name == "expansion_y").unwrap();
         let weights = plan.buf(step.inputs[1]).len as u64;
         assert!(weights < 100, "{weights}");

@@ -1,4 +1,4 @@
-//! `viewsphere bench`: how long a frame and each kernel takes, against the speed of a plain copy.
+//! `viewsphere bench`: the time per frame and per kernel, compared with the speed of a plain copy.
 
 mod copy;
 mod measure;
@@ -18,32 +18,32 @@ use crate::frame::Size;
 
 /// Time a frame and each kernel, on the GPU and on the CPU.
 ///
-/// Frames of a made-up scene are streamed, each with its upload and the field read back. The kernels are timed in a
-/// second run, by the GPU's own clock or, on the CPU, around each step. "moved" is what a step must at least read and
-/// write; its share of the speed of a plain copy, measured in the same run, says how much a kernel could still gain. Work
-/// that stays in a cache can exceed 100 %.
+/// Frames of a synthetic scene are streamed; a frame's time includes its upload and the readback of the flow. Kernels
+/// are timed in a second run: on the GPU by its own clock, on the CPU around each step. "moved" counts the bytes that
+/// a step must at least read and write. "of copy" compares its throughput with that of a plain copy measured in the
+/// same run: how much faster the kernel could still become. Work that stays in a cache can exceed 100 %.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   viewsphere bench
   viewsphere bench --size 640x480 1280x720 --preset fast --frames 200
   viewsphere bench --backend gpu --adapter llvmpipe --json
-  viewsphere bench --pipeline                        what the way on to the sectors of the view costs
-  viewsphere bench --serve                           answer requests, one JSON object a line; see benches/opencv.py")]
+  viewsphere bench --pipeline                        the cost of whole pipelines, up to the sectors of the view
+  viewsphere bench --serve                           answer requests, one JSON object per line; see benches/opencv.py")]
 pub(super) struct Bench {
-    /// Sizes of the frames
+    /// Frame sizes
     #[arg(long, value_name = "WxH", num_args = 1.., default_value = "640x480")]
     size: Vec<Size>,
     /// Frames to time in each run, 2 to 100000
     #[arg(long, value_name = "N", default_value_t = 50, allow_negative_numbers = true)]
     frames: u32,
-    /// Print the figures as JSON
+    /// Print the results as JSON
     #[arg(long)]
     json: bool,
-    /// Time whole pipelines, from raw frames to sectors, against the flow alone, in turns
+    /// Time whole pipelines, from raw frames to sectors, interleaved with the flow alone
     #[arg(long, conflicts_with = "serve")]
     pipeline: bool,
-    /// Answer requests on standard input, one JSON object a line, until it ends
+    /// Answer requests on standard input, one JSON object per line, until it ends
     #[arg(long)]
     serve: bool,
     #[command(flatten)]

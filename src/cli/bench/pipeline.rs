@@ -1,4 +1,4 @@
-//! What the way from the flow to the sectors costs: whole pipelines against the flow alone, frame by frame in one run.
+//! The cost of whole pipelines, from raw frames to sectors, compared with the flow alone frame by frame in one run.
 
 use std::time::Instant;
 
@@ -18,24 +18,25 @@ use crate::imu::{GyroConfig, GyroSample};
 use crate::pipeline::{Pipeline, PipelineConfig};
 use crate::sphere::{Derotation, Sphere};
 
-/// Frames before the clock counts.
+/// Frames before the measurement begins.
 const WARM_UP: u32 = 4;
-/// Frames of the made-up scene.
+/// Frames of the synthetic scene.
 const FRAMES: u32 = 6;
-/// Frames a second.
+/// Frame rate.
 const RATE_HZ: f64 = 30.0;
 
-/// One contender.
+/// One of the computations that are compared.
 #[derive(Debug, Serialize)]
 pub(super) struct Contender {
     pub(super) name: &'static str,
     pub(super) ms: Times,
-    /// Medians of the ratios, frame by frame, to the flow alone in a stream and of separate pairs.
+    /// The median of the per-frame ratios to the flow alone: in a stream (`of_stream`) and of separate pairs
+    /// (`of_pairs`).
     pub(super) of_stream: f64,
     pub(super) of_pairs: f64,
 }
 
-/// Everything measured for one backend and size.
+/// The figures of one backend at one frame size.
 #[derive(Debug, Serialize)]
 pub(super) struct PipelineFigures {
     pub(super) backend: String,
@@ -45,7 +46,7 @@ pub(super) struct PipelineFigures {
     pub(super) contenders: Vec<Contender>,
 }
 
-/// Something that is run once a frame.
+/// What a contender runs per frame.
 type FrameFn<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
 
 /// Measures one backend at one size.
@@ -76,9 +77,9 @@ pub(super) fn measure(
     let gyro = Some(GyroConfig::default());
     for (name, gyro, derotation, certainty) in [
         ("to sectors, no gyro", None, Derotation::Before, false),
-        ("to sectors, turn taken out after", gyro, Derotation::After, false),
-        ("to sectors, search primed", gyro, Derotation::Primed, false),
-        ("to sectors, turn taken out before", gyro, Derotation::Before, false),
+        ("to sectors, derotated after", gyro, Derotation::After, false),
+        ("to sectors, search primed with the rotation", gyro, Derotation::Primed, false),
+        ("to sectors, derotated before", gyro, Derotation::Before, false),
         ("the same, with certainty", gyro, Derotation::Before, true),
     ] {
         let config = PipelineConfig {
@@ -122,14 +123,14 @@ pub(super) fn measure(
     Ok(PipelineFigures { backend: name, width: size.width, height: size.height, frames, contenders })
 }
 
-/// A wide camera with a lens of the usual barrel distortion.
+/// A wide-angle camera with typical barrel distortion.
 fn camera(size: Size) -> Result<Camera> {
     let [width, height] = [size.width, size.height].map(f64::from);
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
     Ok(Camera { size, f_u: 0.53 * width, f_v: 0.53 * width, u_0: 0.504 * width, v_0: 0.492 * height, lens })
 }
 
-/// What was measured, as text.
+/// The figures as text.
 pub(super) fn text(figures: &PipelineFigures) -> String {
     let head = ["", "median ms", "p99 ms", "of the stream", "of the pairs"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
@@ -143,5 +144,5 @@ pub(super) fn text(figures: &PipelineFigures) -> String {
         ]);
     }
     let PipelineFigures { width, height, backend, frames, .. } = figures;
-    format!("{width}×{height} on {backend}, {frames} frames, in turns\n{}", table(&rows))
+    format!("{width}×{height} on {backend}, {frames} frames, interleaved\n{}", table(&rows))
 }

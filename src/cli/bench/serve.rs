@@ -1,6 +1,6 @@
-//! Requests and answers, one JSON object a line, for programs that compare ours with others.
+//! Requests and answers, one JSON object per line, for programs that compare viewsphere with other implementations.
 //!
-//! The process lives on between requests, and with it the devices and engines that they need.
+//! The process keeps its devices and engines from one request to the next.
 
 use std::io::BufRead;
 use std::path::PathBuf;
@@ -18,10 +18,10 @@ use crate::frame::{Frame, PixelFormat, Size};
 use crate::gpu::Gpu;
 use crate::io::flo;
 
-/// Engines that are kept: more would fill the device's memory.
+/// The number of engines kept; more could fill the device's memory.
 const MAX_ENGINES: usize = 4;
 
-/// A pair of pictures to compute the flow of, `repeat` times.
+/// A request to compute the flow between two images, `repeat` times.
 #[derive(Deserialize)]
 struct Request {
     a: PathBuf,
@@ -29,9 +29,9 @@ struct Request {
     backend: String,
     params: Params,
     repeat: u32,
-    /// Whether the first picture counts as computed already, as in a stream.
+    /// Whether the first image counts as already processed, as in a stream.
     stream: bool,
-    /// Where the field is to be written.
+    /// The file to write the flow to.
     flow: Option<PathBuf>,
 }
 
@@ -63,7 +63,7 @@ struct Server<'a> {
 
 type Key = (BackendArg, Size, PixelFormat, Algorithm);
 
-/// Answers until standard input ends. What a request gets wrong is in its answer.
+/// Answers requests until standard input ends. A faulty request is answered with its error.
 pub(super) fn serve(args: &BackendArgs) -> Result<()> {
     let mut server = Server { args, gpu: None, engines: Vec::new() };
     for line in std::io::stdin().lock().lines() {
@@ -110,7 +110,7 @@ impl Server<'_> {
 
     fn engine(&mut self, key: Key) -> Result<&mut Engine> {
         if let Some(i) = self.engines.iter().position(|(other, _)| *other == key) {
-            // Used last, dropped last.
+            // The most recently used engine comes last; the first one is dropped.
             let engine = self.engines.remove(i);
             self.engines.push(engine);
         } else {
@@ -137,7 +137,7 @@ impl Server<'_> {
     }
 }
 
-/// Milliseconds from the pixels to the field on the host; of both frames, or of the second one alone.
+/// The time from pixels to flow on the host, in milliseconds: of both frames, or with `stream` of the second alone.
 fn run(engine: &mut Engine, [a, b]: &[Frame<'_>; 2], stream: bool) -> Result<f64> {
     engine.reset();
     if stream {
@@ -145,7 +145,7 @@ fn run(engine: &mut Engine, [a, b]: &[Frame<'_>; 2], stream: bool) -> Result<f64
         let (done, ms) = timed(|| engine.process(b).map(|_| ()));
         return done.map(|()| ms);
     }
-    // Both on their way before the first is waited for, as nobody needs an answer to it.
+    // Submit both before waiting for the first, whose output nobody needs.
     let (done, ms) = timed(|| {
         let first = engine.submit(a)?;
         let second = engine.submit(b)?;

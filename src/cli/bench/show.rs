@@ -1,17 +1,17 @@
-//! The measurements as text.
+//! The benchmark's results as text.
 
 use super::measure::BenchFigures;
 use crate::cli::print::table;
 
-/// What was measured for one backend and size.
+/// The figures of one backend at one frame size, as text.
 pub(super) fn text(figures: &BenchFigures) -> String {
     let BenchFigures { startup, frame_ms, .. } = figures;
     let mut text = format!(
         "{}×{} on {}, {} frames\n\
-         frame      median {:.2} ms, p99 {:.2} ms, best {:.2} ms; {:.0} a second\n\
+         frame      median {:.2} ms, p99 {:.2} ms, best {:.2} ms; {:.0} frames/s\n\
          start-up   engine {:.1} ms, first frame {:.1} ms, first pair {:.1} ms\n\
          memory     {:.1} MiB of buffers\n\
-         copy       {:.2} GB/s read and written\n\n",
+         copy       {:.2} GB/s, read plus written\n\n",
         figures.width,
         figures.height,
         figures.backend,
@@ -27,7 +27,7 @@ pub(super) fn text(figures: &BenchFigures) -> String {
         figures.copy_gb_s,
     );
     if figures.kernels.is_empty() {
-        return text + "kernels    no times: the device has no clock for them\n";
+        return text + "kernels    no times: the device has no timestamps\n";
     }
     let head = ["kernel", "steps", "median ms", "p99 ms", "moved MB", "GB/s", "of copy"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];

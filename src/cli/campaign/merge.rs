@@ -8,18 +8,19 @@ use crate::cli::{Outcome, input};
 use crate::error::{Error, Result};
 use crate::sim::campaign::Results;
 
-/// Put the results of several folders together, and say what they say together.
+/// Merge the results of several folders, and summarize them together.
 ///
-/// They must be of one version and configuration. A flight that is in several of them must have ended the same.
+/// They must be of one version and configuration. A flight found in several folders must have ended alike in all of
+/// them.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   viewsphere campaign merge part_1 part_2 -o campaign/")]
 pub(super) struct Merge {
-    /// Folders that `viewsphere campaign` wrote into
+    /// Folders that `viewsphere campaign` wrote
     #[arg(required = true, value_name = "FOLDER")]
     inputs: Vec<PathBuf>,
-    /// Folder to write into; it is made if it is not there. What is in it already is replaced
+    /// Folder to write into, created if missing. Results already there are replaced
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
     /// Print the table as JSON

@@ -1,4 +1,4 @@
-//! `viewsphere campaign`: many flights, and what they say together.
+//! `viewsphere campaign`: many simulated flights, and their statistics.
 
 mod merge;
 mod report;
@@ -27,21 +27,23 @@ use crate::sim::flight::{self, MAX_LATENCY_FRAMES, Sensor};
 use crate::steer::{Danger, Policy};
 use crate::text::counted;
 
-/// The file that results are kept in.
+/// The results file.
 const RESULTS: &str = "results.jsonl";
 
-/// Fly every combination of worlds, policies and so on, each with many seeds, and say how often the goal is reached.
+/// Fly every combination of worlds, sensors, policies and so on with many seeds, and count how often the goal is
+/// reached.
 ///
-/// Written into the folder: results.jsonl, an object a flight, added as soon as it has ended; and at the end table.csv,
-/// table.json and report.html, a page that needs nothing beside itself, with a row for each combination: flights; how many reached the goal, crashed, left the band of altitudes or took
-/// too long; the rate of success with its 95 % interval (Wilson 1927); the least clearance of a flight, mean and 5th
-/// percentile; path efficiency of the flights that reached the goal; the way flown a crash; the roll rate (root mean
-/// square); the share of time without a cue; the offset from the middle of the way where there is one.
+/// Files in the folder: results.jsonl, one object per flight, appended as soon as the flight has ended; and at the
+/// end table.csv, table.json and report.html (one self-contained page), with a row per combination: flights; how many
+/// reached the goal, crashed, left the altitude band or timed out; the success rate with its 95 % confidence interval
+/// (Wilson 1927); the least clearance of a flight, mean and 5th percentile; the path efficiency of the flights that
+/// reached the goal; the distance flown per crash; the roll rate (root mean square); the share of time without a cue;
+/// the offset from the centre line where the world has one.
 ///
-/// It can be stopped at any time: called again it goes on where it was, tries again what failed with an error, and flies
-/// what was added to the lists. Results of another version, configuration or adapter are refused; only merge brings those of
-/// several adapters together, and the table names them. The table is of all results in the
-/// folder. The same flights give the same files, however many are flown at a time.
+/// A campaign can be stopped at any time. Called again, it resumes, retries the flights that failed with an error,
+/// and flies what was added to the lists. Results of another version, configuration or adapter are refused; only
+/// merge combines those of several adapters, and the table then names them. The table covers all results in the
+/// folder. The same flights give the same files, however many are flown concurrently.
 #[derive(Args, Debug)]
 #[command(
     args_conflicts_with_subcommands = true,
@@ -53,7 +55,7 @@ Examples:
   viewsphere campaign --worlds forest --seeds 0..1000 --shard $SLURM_ARRAY_TASK_ID/10 -o part_$SLURM_ARRAY_TASK_ID
   viewsphere campaign merge part_* -o campaign/
 
-Exit codes: 0 done, whatever the flights ended with; 2 an error, also if a flight failed with one; 130 stopped by a signal."
+Exit codes: 0 done, however the flights ended; 2 an error, also that of a flight; 130 stopped by a signal."
 )]
 pub(super) struct Campaign {
     #[command(subcommand)]
@@ -61,16 +63,16 @@ pub(super) struct Campaign {
     /// Worlds, as `viewsphere fly` takes them
     #[arg(long, value_name = "WORLD,...", value_delimiter = ',', default_value = "forest")]
     worlds: Vec<CourseKind>,
-    /// What is steered by: depth, flow, noisy-flow, images
+    /// What the vehicle steers by: depth, flow, noisy-flow, images
     #[arg(long, value_name = "SENSOR,...", value_delimiter = ',', default_values_t = [Sensor::default()])]
     sensors: Vec<Sensor>,
-    /// How commands are found: none, balance, potential, heading, arc
+    /// Steering policies: none, balance, potential, heading, arc
     #[arg(long, value_name = "POLICY,...", value_delimiter = ',', default_values_t = [Policy::default()])]
     policies: Vec<Policy>,
-    /// What counts as near: divergence, nearness, blend
+    /// Measures of danger: divergence, nearness, blend
     #[arg(long, value_name = "DANGER,...", value_delimiter = ',', default_values_t = [Danger::default()])]
     dangers: Vec<Danger>,
-    /// Airspeeds, m/s: the airframe flies level at 7.7 to 25, a turn at 0.1 to 1000
+    /// Airspeeds, m/s: the airframe can hold its altitude at 7.7 to 25; with --body turn 0.1 to 1000
     #[arg(
         long,
         value_name = "M_S,...",
@@ -79,10 +81,10 @@ pub(super) struct Campaign {
         default_value = "12"
     )]
     speeds: Vec<f64>,
-    /// Sizes of the pictures
+    /// Image sizes
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', default_value = "320x240")]
     sizes: Vec<Size>,
-    /// Frames from an exposure until its command acts, at most 30
+    /// Frames from an exposure until its command takes effect, at most 30
     #[arg(
         long,
         value_name = "N,...",
@@ -92,20 +94,20 @@ pub(super) struct Campaign {
         default_value = "1"
     )]
     latencies: Vec<u32>,
-    /// What goes wrong, as `viewsphere fly` takes it: none, one fault, or several with + between them. dropped alone is
+    /// Faults, as `viewsphere fly` takes them: none, one fault, or several joined by +. dropped alone means
     /// dropped=0.2, gyro-bias alone gyro-bias=5
     #[arg(long, value_name = "FAULT[+FAULT]...,...", value_delimiter = ',', default_value = "none")]
     faults: Vec<Faults>,
-    /// Seeds of the worlds: from the first until before the last, or a single one
+    /// Seeds of the worlds: FIRST..LAST, without LAST, or a single one
     #[arg(long, value_name = "FIRST..LAST", allow_hyphen_values = true, default_value = "0..10")]
     seeds: Seeds,
-    /// Folder to write into; it is made if it is not there
+    /// Folder to write into, created if missing
     #[arg(short, long, value_name = "FOLDER", default_value = "campaign")]
     output: PathBuf,
-    /// Flights at a time, at most 4096 [default: as many as there are cores]
+    /// Flights to fly concurrently, at most 4096 [default: the number of cores]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole_within(NonZero::<usize>::MIN, MAX_JOBS))]
     jobs: Option<NonZero<usize>>,
-    /// Fly only the I-th of N parts of the flights, I from 1 to N; `campaign merge` puts them together
+    /// Fly only part I of N, I from 1 to N; `campaign merge` combines the parts
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL)]
     shard: Shard,
     /// Print the table as JSON
@@ -169,7 +171,7 @@ impl Campaign {
         let configuration = Configuration::new(&plan.base, self.setup.text())?;
         let Opened { mut journal, mut results, repaired } = Journal::open(&path, &configuration)?;
         if repaired {
-            print::note(format_args!("{}: dropped a half-written line at its end", path.display()));
+            print::note(format_args!("{}: dropped an incomplete last line", path.display()));
         }
         if self.sensors.contains(&Sensor::Images) {
             results.check_adapter(&path, &backend.name())?;
@@ -177,9 +179,9 @@ impl Campaign {
         let mut jobs = self.shard.part(plan.jobs());
         let all = jobs.len();
         jobs.retain(|job| !results.has_flown(&job.key()));
-        // Seed by seed, so that there is something of every setting when it is stopped, and the time left is known early.
+        // Seed by seed, so that an interrupted campaign covers every setting and the time left is known early.
         jobs.sort_by_key(|job| job.seed);
-        print::note(format_args!("{}, {} of them done before", counted(all, "flight"), all - jobs.len()));
+        print::note(format_args!("{}, {} already done", counted(all, "flight"), all - jobs.len()));
         let bar = progress(&jobs);
         let open = || Ok([self.backend.open_like(&backend)?, self.backend.open_like(&backend)?]);
         let mut tally = Tally::default();
@@ -213,10 +215,10 @@ impl Campaign {
     }
 }
 
-/// More threads than any machine has use for.
+/// The most concurrent flights: more threads than any machine can use.
 const MAX_JOBS: NonZero<usize> = NonZero::new(4096).unwrap();
 
-/// How the flights of this call ended.
+/// How the flights of this run ended.
 #[derive(Default)]
 struct Tally {
     reached: usize,
@@ -240,7 +242,7 @@ impl Tally {
     }
 }
 
-/// Writes and prints the table. That a flight failed is an error, after everything is written.
+/// Writes and prints the table. A failed flight is an error, returned after everything is written.
 fn finish(results: &Results, folder: &Path, json: bool) -> Result<Outcome> {
     let table = results.table();
     report::write(folder, &table)?;
@@ -262,7 +264,7 @@ fn finish(results: &Results, folder: &Path, json: bool) -> Result<Outcome> {
     }
 }
 
-/// A bar over the flights, on standard error where that is a terminal.
+/// A progress bar over the flights, on standard error where that is a terminal.
 fn progress(jobs: &[Job]) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} flights, {eta} left, {msg}");
     ProgressBar::new(jobs.len() as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))

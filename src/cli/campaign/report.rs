@@ -1,4 +1,4 @@
-//! A campaign's table, to files and to standard output.
+//! A campaign's table, written to files and to standard output.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::io::write_bytes;
 use crate::report::{CampaignRow, campaign_page};
 use crate::sim::campaign::{Row, Table};
 
-/// Writes the table in each form that there is.
+/// Writes the table in every format.
 pub(super) fn write(folder: &Path, table: &Table) -> Result<()> {
     let texts = [
         ("table.csv", table.csv()),
@@ -21,7 +21,7 @@ pub(super) fn write(folder: &Path, table: &Table) -> Result<()> {
     Ok(())
 }
 
-/// The table to read.
+/// The table as text.
 pub(super) fn text(table: &Table) -> String {
     let (keys, same) = keys(table);
     let columns: Vec<Column> = keys.into_iter().chain(FIGURES).collect();
@@ -30,7 +30,7 @@ pub(super) fn text(table: &Table) -> String {
     format!("{same}\n{}", print::table(&lines))
 }
 
-/// The table as a page.
+/// The table as an HTML page.
 fn html(table: &Table) -> String {
     let (keys, same) = keys(table);
     let row = |row: &Row| CampaignRow {
@@ -51,7 +51,7 @@ fn html(table: &Table) -> String {
     campaign_page("Campaign", &same, &names, &table.rows.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Of what distinguishes the rows only that is a column which is not the same for all of them; the rest is said once.
+/// The key columns whose values differ between rows, and a text with the values that all rows share.
 fn keys(table: &Table) -> (Vec<Column>, String) {
     let is_same = |(name, value): &Column| {
         *name != "world" && table.rows.windows(2).all(|pair| value(&pair[0]) == value(&pair[1]))
@@ -69,7 +69,7 @@ fn cells(row: &Row, columns: &[Column]) -> Vec<String> {
 
 type Column = (&'static str, fn(&Row) -> String);
 
-/// What distinguishes rows.
+/// The columns of a row's key.
 const KEYS: [Column; 8] = [
     ("world", |row| row.world.clone()),
     ("sensor", |row| row.sensor.clone()),
@@ -81,7 +81,7 @@ const KEYS: [Column; 8] = [
     ("faults", |row| row.faults.clone()),
 ];
 
-/// What is said of them.
+/// The columns of a row's figures.
 const FIGURES: [Column; 13] = [
     ("flights", |row| row.flights.to_string()),
     ("success", |row| some(row.success, 3)),
@@ -98,7 +98,7 @@ const FIGURES: [Column; 13] = [
     ("no cue", |row| some(row.invalid, 3)),
 ];
 
-/// A figure with so many decimals, or a dash.
+/// A figure with `decimals` decimals, or a dash if there is none.
 fn some(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
 }

@@ -1,4 +1,4 @@
-//! `viewsphere crosscheck`: the two executors against each other, step by step, on the user's machine and pictures.
+//! `viewsphere crosscheck`: compares the two backends step by step, on the user's machine and images.
 
 mod run;
 mod show;
@@ -21,40 +21,41 @@ use crate::sphere::{Cameras, ExtraOutputs, Sphere, plan};
 
 /// Compare the GPU with the CPU, step by step.
 ///
-/// Each step of the computation runs on both, on the same inputs (the CPU's), and every value must lie within the bound
-/// of its kernel. Then both compute the whole flow on their own, errors adding up, and the two fields are compared.
-/// Ends with 1 if a value of a step is beyond its bound.
+/// Each step of the computation runs on both, with the same inputs (the CPU's), and every value must lie within its
+/// kernel's bound. Then each computes the whole flow on its own, errors accumulating, and the two flow fields are
+/// compared. Exits with 1 if a value of a step exceeds its bound.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
-  viewsphere crosscheck                              a made-up pair of 640×480
+  viewsphere crosscheck                              a synthetic pair of 640×480
   viewsphere crosscheck a.png b.png --steps
   viewsphere crosscheck --sphere                     on to the sectors of the view, through a lens and a turn
   viewsphere crosscheck --size 1280x720 --preset accurate --adapter llvmpipe --json")]
 pub(super) struct Crosscheck {
-    /// Two pictures of one size; without them a made-up textured pair
+    /// Two images of the same size [default: a synthetic textured pair]
     #[arg(num_args = 2, value_names = ["A", "B"])]
     pictures: Vec<PathBuf>,
-    /// Size of the made-up pair
+    /// Size of the synthetic pair
     #[arg(long, value_name = "WxH", conflicts_with = "pictures")]
     size: Option<Size>,
-    /// Also check the certainty weighting, with this picture (black 0, white 1) or .npy as certainty of both frames
+    /// Also check the certainty weighting, with this image (black 0, white 1) or .npy plane as the certainty of both
+    /// frames
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Check the whole way to the sectors of the view: a made-up lens taken out and a made-up turn, then the flow, cells
-    /// and sectors
+    /// Check all steps up to the sectors of the view: undistortion of a synthetic lens, a synthetic rotation, the
+    /// flow, cells and sectors
     #[arg(long)]
     sphere: bool,
-    /// Part of the name of the GPU adapter to check; without it the best one, software adapters too
+    /// Part of the name of the GPU adapter to check [default: the best one, software adapters included]
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Multiply every bound by this; 0 asks for the same bits on both sides
+    /// Multiply every bound by this factor; 0 demands identical bits
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     bounds: f32,
-    /// Print every step, not only the worst of each kernel
+    /// Print every step, not only the worst one of each kernel
     #[arg(long)]
     steps: bool,
-    /// Print the figures as JSON, always with every step
+    /// Print the results as JSON, always with every step
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -91,17 +92,17 @@ impl Crosscheck {
         Ok(if report.breaches == 0 { Outcome::Done } else { Outcome::CheckFailed })
     }
 
-    /// The pictures, and what they are called.
+    /// The two images, and the name by which errors refer to them.
     fn pair(&self) -> Result<([Image; 2], PathBuf)> {
         if let [a, b] = self.pictures.as_slice() {
             return Ok((input::pair(a, b)?, a.clone()));
         }
         let scene = Scene::new(self.size.unwrap_or(Size::new(640, 480)))?;
-        Ok(([scene.frame(0), scene.frame(1)], PathBuf::from("the made-up pair")))
+        Ok(([scene.frame(0), scene.frame(1)], PathBuf::from("the synthetic pair")))
     }
 }
 
-/// The plan to the sectors, for a wide camera with a lens of the usual barrel distortion.
+/// The plan up to the sectors, for a wide-angle camera with typical barrel distortion.
 fn sphere_plan(algorithm: &Algorithm, image: &Image, mask: Option<&Plane>) -> Result<Plan> {
     let [width, height] = [image.size.width, image.size.height].map(f64::from);
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;

@@ -1,4 +1,4 @@
-//! The comparison itself.
+//! The comparison of the two backends.
 
 use glam::{DMat3, DVec3};
 use serde::Serialize;
@@ -15,23 +15,23 @@ use crate::quantile::nearest_rank;
 use crate::runner::Runner;
 use crate::sphere::{Heading, Motion};
 
-/// What was found.
+/// The results of a crosscheck.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     pub(super) adapter: String,
     pub(super) width: u32,
     pub(super) height: u32,
-    /// Values beyond their bound, over all steps.
+    /// The number of values beyond their bound, over all steps.
     pub(super) breaches: usize,
     pub(super) steps: Vec<StepFigures>,
-    /// The two flow fields computed each on its own, in pixels.
+    /// The difference of the two flow fields, each computed independently, in pixels.
     pub(super) flow: Spread,
-    /// In that run, the first step with any difference, and the first with one beyond its kernel's bound.
+    /// In the independent runs: the first step with any difference, and the first with one beyond its kernel's bound.
     pub(super) first_difference: Option<String>,
     pub(super) first_beyond_bound: Option<String>,
 }
 
-/// One output of one step.
+/// The figures of one output of one step.
 #[derive(Debug, Serialize)]
 pub(super) struct StepFigures {
     pub(super) kernel: &'static str,
@@ -41,17 +41,17 @@ pub(super) struct StepFigures {
     pub(super) spread: Spread,
     pub(super) bound_absolute: f32,
     pub(super) bound_relative: f32,
-    /// Of the bounds that values have of their own, where the kernel gives them one.
+    /// Statistics of the per-value bounds, where the kernel gives them.
     pub(super) bound_own: Option<Own>,
     pub(super) reason: &'static str,
-    /// The largest share of its bound that a value takes up.
+    /// The largest ratio of a value's difference to its bound.
     pub(super) share_of_bound: f32,
     pub(super) values: usize,
     pub(super) breaches: usize,
     pub(super) worst: Option<Worst>,
 }
 
-/// Each value's own part of the bound.
+/// Statistics of the per-value bounds of one output.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Own {
     pub(super) median: f32,
@@ -59,7 +59,7 @@ pub(super) struct Own {
     pub(super) max: f32,
 }
 
-/// How far apart two sets of values lie.
+/// Statistics of the differences between two sets of values.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Spread {
     pub(super) max: f32,
@@ -67,7 +67,7 @@ pub(super) struct Spread {
     pub(super) mean: f64,
 }
 
-/// The value that is furthest beyond its bound.
+/// The value that exceeds its bound the most.
 #[derive(Debug, Serialize)]
 pub(super) struct Worst {
     pub(super) column: usize,
@@ -78,17 +78,17 @@ pub(super) struct Worst {
     pub(super) bound: f32,
 }
 
-/// The two executors, and the GPU once more: corrected before every step, and left to itself.
+/// The CPU, and the GPU twice: with its inputs corrected before every step, and running independently.
 struct Sides<'a> {
     plan: &'a Plan,
     cpu: Runner,
     corrected: Runner,
     alone: Runner,
-    /// What bounds are multiplied by.
+    /// The factor that multiplies every bound.
     factor: f32,
 }
 
-/// Runs the plan on a pair of frames, on all sides, with every bound multiplied by `factor`.
+/// Runs the plan on a pair of frames on all sides, with every bound multiplied by `factor`.
 pub(super) fn run(
     gpu: &Gpu,
     plan: &Plan,
@@ -141,13 +141,13 @@ pub(super) fn run(
     }
     if let (Some(expected), Some(found)) = (expected.flow("flow"), found.flow("flow")) {
         let error = endpoint_error(expected, found)?;
-        // Only the figures count here, and no bound.
+        // Only the statistics matter here, not the bound.
         report.flow = Spread::from(&compare(&vec![0.0; error.data.len()], &error.data, &Bound::default()));
     }
     Ok(report)
 }
 
-/// A turn of some degrees, and a direction of motion beside the camera's axis.
+/// A rotation of some degrees, with a direction of motion off the camera's axis.
 fn turn() -> Motion {
     let axis = DVec3::new(0.2, -0.5, 0.8).normalize();
     let heading = Heading { direction: DVec3::new(0.08, -0.03, 1.0).normalize(), error_rad: 0.02 };
@@ -162,7 +162,7 @@ impl Sides<'_> {
                 self.corrected.write(input, &self.cpu.read(input, buf.len)?);
             }
         }
-        // A value that is not written must not pass because it was right before.
+        // Poison the outputs, so that a value that is not written cannot pass with its old content.
         for &(output, shape) in &step.outputs {
             let poison = vec![POISON; shape.len()];
             self.cpu.write(output, &poison);
@@ -174,7 +174,7 @@ impl Sides<'_> {
         self.compare(step, format!("frame {parity}, {}", step.label), report)
     }
 
-    /// Holds what a step left on the GPU against what it left on the CPU.
+    /// Compares a step's outputs on the GPU with those on the CPU.
     fn compare(&self, step: &Step, name: String, report: &mut Report) -> Result<()> {
         let outputs = step.outputs.iter().zip(step.kernel.outputs).zip(self.bounds(step)?);
         for ((&(id, shape), &output), bound) in outputs {
@@ -192,7 +192,7 @@ impl Sides<'_> {
         Ok(())
     }
 
-    /// How far each of the step's outputs may lie off.
+    /// The bound of each of the step's outputs.
     fn bounds(&self, step: &Step) -> Result<Vec<Bound>> {
         let read = |id: BufId, len: usize| self.cpu.read(id, len);
         let inputs: Result<Vec<_>> = step.inputs.iter().map(|&id| read(id, self.plan.buf(id).len)).collect();
@@ -263,7 +263,7 @@ mod tests {
     use crate::frame::{PixelFormat, Size};
     use crate::plan::Shape;
 
-    /// The check itself is checked: a value that differs, and one that was never written, are found and placed.
+    /// Tests the check itself: it finds and locates a value that differs, and one that was never written.
     #[test]
     fn a_breach_is_counted_and_placed() {
         let size = Size::new(5, 3);

@@ -3,7 +3,7 @@
 use super::run::{Report, Spread, StepFigures};
 use crate::cli::print::table;
 
-/// What was found, as tables: the worst of each kernel, and every step if wanted.
+/// The results as tables: the worst step of each kernel, or every step.
 pub(super) fn text(report: &Report, steps: bool) -> String {
     let mut text = format!("{}×{} on {} against the CPU\n\n", report.width, report.height, report.adapter);
     if steps {
@@ -40,8 +40,8 @@ pub(super) fn text(report: &Report, steps: bool) -> String {
     }
     let none = || "none".to_owned();
     text += &format!(
-        "\nflow, each side on its own: max {:.2e} px, 99.9 % within {:.2e} px, mean {:.2e} px\n\
-         first step that differs at all: {}\nfirst step beyond its bound, errors adding up: {}\n{}\n",
+        "\nflow, computed independently: max {:.2e} px, 99.9 % within {:.2e} px, mean {:.2e} px\n\
+         first step with any difference: {}\nfirst step beyond its bound, errors accumulating: {}\n{}\n",
         report.flow.max,
         report.flow.p999,
         report.flow.mean,
@@ -66,14 +66,14 @@ fn worst_of(first: &StepFigures, all: &[StepFigures]) -> Vec<String> {
         p999: same().map(|s| s.spread.p999).fold(0.0, f32::max),
         mean: same().map(|s| s.spread.mean).fold(0.0, f64::max),
     };
-    // The bound is that of the step that takes up most of it.
+    // Show the bound of the step that uses the most of it.
     let step = same().max_by(|a, b| a.share_of_bound.total_cmp(&b.share_of_bound)).unwrap_or(first);
     row(first.kernel.to_owned(), step, spread, same().map(|s| s.breaches).sum())
 }
 
 fn row(name: String, step: &StepFigures, spread: Spread, breaches: usize) -> Vec<String> {
     let bound = match (&step.bound_own, step.bound_absolute, step.bound_relative) {
-        (Some(own), ..) => format!("each its own, median {:.1e}", own.median),
+        (Some(own), ..) => format!("per value, median {:.1e}", own.median),
         (None, 0.0, 0.0) => "0".to_owned(),
         (None, absolute, 0.0) => format!("{absolute:.1e}"),
         (None, 0.0, relative) => format!("{relative:.1e}·|x|"),

@@ -1,4 +1,4 @@
-//! `viewsphere flow`: the flow between two pictures, or along a sequence or a video.
+//! `viewsphere flow`: the flow between two images, or along a sequence or video.
 
 mod report;
 pub(super) mod source;
@@ -21,11 +21,11 @@ use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, Plane, Size};
 use crate::io::read_flow;
 
-/// Compute the flow between two pictures, or along a sequence or a video.
+/// Compute the flow between two images, or along a sequence or video.
 ///
-/// Inputs are two pictures (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard
-/// input. For two pictures -o, --color, --arrows and --confidence name files; for everything else folders, in which file
-/// 000000 belongs to the first frame and its flow to the second. Without any of them a summary is printed.
+/// Inputs are two images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on
+/// standard input. For two images -o, --color, --arrows and --confidence name files; for everything else folders, in
+/// which file 000000 holds the flow from the first frame to the second. If none is given, a summary is printed.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -37,25 +37,26 @@ Examples:
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
   ffmpeg -i in.mp4 -f rawvideo -pix_fmt gray - | viewsphere flow - --raw 640x480 -o flows/")]
 pub(super) struct Flow {
-    /// Two pictures; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    /// Two images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard
+    /// input
     #[arg(required = true)]
     inputs: Vec<String>,
     /// Write the flow to this file (.flo, .png for KITTI, .npy) or into this folder; - is standard output
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
-    /// Format of the flow; without it by the file's extension, and .flo in a folder
+    /// Format of the flow [default: by the file's extension; .flo in a folder]
     #[arg(long, value_enum)]
     format: Option<FormatArg>,
-    /// Write the flow as colours to this .png or into this folder
+    /// Write the flow as a colour image to this .png or into this folder
     #[arg(long, value_name = "PATH")]
     color: Option<PathBuf>,
-    /// Length shown in full colour; without it the longest displacement of the first pair
+    /// Displacement in pixels shown in full colour [default: the longest one of the first pair]
     #[arg(long, value_name = "PX", allow_negative_numbers = true, requires = "color")]
     scale: Option<f32>,
     /// Write the first frame with arrows over it to this .png or into this folder
     #[arg(long, value_name = "PATH")]
     arrows: Option<PathBuf>,
-    /// Length of an arrow against its displacement
+    /// Length of an arrow per length of its displacement
     #[arg(
         long,
         value_name = "FACTOR",
@@ -64,19 +65,19 @@ pub(super) struct Flow {
         requires = "arrows"
     )]
     arrow_gain: f32,
-    /// Write how far each pixel's flow is to be trusted, 0 to 1, to this .npy or .png or into this folder (as .npy)
+    /// Write the flow's confidence per pixel, 0 to 1, to this .npy or .png or into this folder (as .npy)
     #[arg(long, value_name = "PATH")]
     confidence: Option<PathBuf>,
-    /// Begin the first pair's search with this flow field
+    /// Initial flow for the first pair's search
     #[arg(long, value_name = "FILE")]
     init: Option<PathBuf>,
-    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1
+    /// Certainty of each pixel in every frame: an image (black 0, white 1) or a .npy plane of 0 to 1
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Begin each pair's search with the flow of the pair before
+    /// Start each pair's search from the previous pair's flow
     #[arg(long)]
     warm_start: bool,
-    /// Size of raw gray frames, one byte a pixel, on standard input
+    /// Size of raw gray frames, one byte per pixel, on standard input
     #[arg(long, value_name = "WxH")]
     raw: Option<Size>,
     /// Print the summary as JSON
@@ -88,7 +89,7 @@ pub(super) struct Flow {
     backend: BackendArgs,
 }
 
-/// What is given beside the frames.
+/// The inputs beside the frames.
 struct Given {
     mask: Option<Plane>,
     init: Option<FlowField>,
@@ -107,7 +108,7 @@ impl Flow {
             ("--confidence", &self.confidence),
         ] {
             let given = [&self.init, &self.mask].into_iter().flatten().map(PathBuf::as_path);
-            // A folder may well be the one of two pictures: what goes there is named otherwise.
+            // For two images a folder may be an output too, as the files in it get other names.
             let pictures = self.inputs.iter().map(Path::new);
             input::spared(flag, result.as_deref().filter(|path| !path.is_dir()), pictures.chain(given))?;
         }
@@ -146,7 +147,7 @@ impl Flow {
         self.outputs().iter().any(|path| path.as_deref() == Some(Path::new("-")))
     }
 
-    /// What would otherwise only be found after the first pair, or never.
+    /// Checks what would otherwise fail only after the first pair, or pass unnoticed.
     fn check(&self, single: bool) -> Result<()> {
         for (name, value) in [("--scale", self.scale), ("--arrow-gain", Some(self.arrow_gain))] {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
@@ -161,7 +162,7 @@ impl Flow {
             return Err(Error::parameter("--warm-start", "given", "a sequence of frames, not two pictures"));
         }
         if !single && self.init.is_some() && !self.warm_start {
-            let expected = "--warm-start beside it in a sequence, where it is for the first pair only";
+            let expected = "--warm-start with it in a sequence, as it is for the first pair only";
             return Err(Error::parameter("--init", "given", expected));
         }
         Ok(())
@@ -204,7 +205,7 @@ fn initial(path: &Path, size: Size, first: &Path) -> Result<FlowField> {
     Ok(flow)
 }
 
-/// A bar on standard error, where that is a terminal.
+/// A progress bar on standard error, where that is a terminal.
 fn progress(frames: Option<u64>) -> ProgressBar {
     let style = |template: &str| {
         ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())

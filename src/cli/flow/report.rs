@@ -1,4 +1,4 @@
-//! What is said of the flow that was computed.
+//! The summary of the computed flow.
 
 use serde::Serialize;
 
@@ -7,20 +7,20 @@ use crate::error::Result;
 use crate::frame::{FlowField, Size};
 use crate::stream::Latency;
 
-/// Figures over all pairs.
+/// Statistics over all pairs.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     backend: String,
     width: u32,
     height: u32,
     pub(super) pairs: u64,
-    /// Over the known displacements of all pairs.
+    /// The mean over the known displacements of all pairs.
     mean_flow_px: f64,
     max_flow_px: f64,
-    /// From handing a frame over to having its flow, half of the frames at most.
+    /// The median of the times from submitting a frame to receiving its flow.
     median_ms: f64,
     p99_ms: f64,
-    /// The length shown in full colour, if colours were written.
+    /// The displacement shown in full colour, if colour images were written.
     color_scale_px: Option<f32>,
     #[serde(skip)]
     known: u64,
@@ -58,14 +58,15 @@ impl Report {
         self.color_scale_px = scale;
     }
 
-    /// To standard output: everything as JSON or if nothing else was asked for, else only the colours' scale.
+    /// Prints to standard output: with `json` everything as JSON, with `summary` everything as text, else only the
+    /// scale of the colours.
     pub(super) fn print(&self, json: bool, summary: bool) -> Result<()> {
         if json {
             return print::json(self);
         }
         if summary {
             print::text(&format!(
-                "{} pair{} of {}×{} on {}\nflow   mean {:.3} px, max {:.3} px\ntime   median {:.2} ms, p99 {:.2} ms a pair",
+                "{} pair{} of {}×{} on {}\nflow   mean {:.3} px, max {:.3} px\ntime   median {:.2} ms, p99 {:.2} ms per pair",
                 self.pairs,
                 if self.pairs == 1 { "" } else { "s" },
                 self.width,
@@ -78,7 +79,7 @@ impl Report {
             ))?;
         }
         match self.color_scale_px {
-            Some(scale) => print::text(&format!("colour scale: {scale:.4} px in full colour")),
+            Some(scale) => print::text(&format!("colour scale: {scale:.4} px is full colour")),
             None => Ok(()),
         }
     }

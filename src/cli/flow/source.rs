@@ -1,4 +1,4 @@
-//! The frames that come in, all of one size and pixel format.
+//! The source of frames, all of one size and pixel format.
 
 use std::path::PathBuf;
 
@@ -7,10 +7,10 @@ use crate::frame::{Image, PixelFormat, Size};
 use crate::io::Frames;
 use crate::live::FrameSource;
 
-/// A source whose frames belong together. Where one does not, the error names the first one too.
+/// A source of frames of one size and pixel format. An error about one that differs also names the first frame.
 pub(in crate::cli) struct Source {
     frames: Frames,
-    /// What errors call frames that are not files of their own.
+    /// The name by which errors refer to frames that are not files of their own.
     stream: PathBuf,
     first: Option<(PathBuf, PixelFormat)>,
 }
@@ -25,17 +25,17 @@ impl Source {
         Ok(Self { frames, stream: stream.into(), first: None })
     }
 
-    /// Frames in all, where that is known beforehand.
+    /// The number of frames, where it is known in advance.
     pub(in crate::cli) fn len(&self) -> Option<u64> {
         self.frames.len()
     }
 
-    /// Frames a second as a fraction, where the source states it.
+    /// The frame rate as a fraction, where the source states it.
     pub(in crate::cli) fn rate(&self) -> Option<(u32, u32)> {
         self.frames.rate()
     }
 
-    /// What the last frame read is called.
+    /// The name of the last frame read.
     pub(in crate::cli) fn name(&self) -> PathBuf {
         self.frames.path().map_or_else(|| self.stream.clone(), PathBuf::from)
     }
@@ -61,7 +61,7 @@ impl Source {
         Ok(more)
     }
 
-    /// Reads the first two frames, without which there is no flow.
+    /// Reads the first two frames, the minimum for a flow.
     pub(in crate::cli) fn first_two(&mut self) -> Result<[Image; 2]> {
         let mut images = [Image::default(), Image::default()];
         for (count, image) in images.iter_mut().enumerate() {

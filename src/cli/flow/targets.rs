@@ -1,4 +1,4 @@
-//! Where the results go, and in which format.
+//! The outputs and their formats.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -19,9 +19,9 @@ const ARROW_STEP: u32 = 16;
 /// Formats of a flow field.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FormatArg {
-    /// Middlebury .flo: two f32 a pixel
+    /// Middlebury .flo: two f32 per pixel
     Flo,
-    /// KITTI .png: 16 bits, 1/64 px, to ±512 px
+    /// KITTI .png: 16 bits, 1/64 px, within ±512 px
     Kitti,
     /// NumPy .npy: float32, height × width × 2
     Npy,
@@ -45,14 +45,14 @@ impl FormatArg {
     }
 }
 
-/// One pair's results.
+/// The results of one pair.
 pub(super) struct Pair<'a> {
     pub(super) first: &'a Image,
     pub(super) flow: &'a FlowField,
     pub(super) confidence: Option<&'a Plane>,
 }
 
-/// Where one kind of result goes.
+/// The destination of one kind of result.
 pub(in crate::cli) enum Place {
     Stdout,
     File(PathBuf),
@@ -60,7 +60,7 @@ pub(in crate::cli) enum Place {
 }
 
 impl Place {
-    /// Makes the folder, if it is one.
+    /// Creates the folder, if it is one.
     pub(in crate::cli) fn make_folder(&self) -> Result<()> {
         match self {
             Self::Folder(folder, _) => fs::create_dir_all(folder).map_err(|source| Error::io(folder, source)),
@@ -68,7 +68,7 @@ impl Place {
         }
     }
 
-    /// Writes the result of this number.
+    /// Writes the result of pair `number`.
     pub(in crate::cli) fn write(&self, number: u64, bytes: &[u8]) -> Result<()> {
         match self {
             Self::Stdout => print::bytes(bytes),
@@ -87,7 +87,7 @@ enum Kind {
     Confidence { npy: bool },
 }
 
-/// Where all results go.
+/// The destinations of all results.
 pub(super) struct Targets {
     places: Vec<(Kind, Place)>,
     scale: Option<f32>,
@@ -95,7 +95,7 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    /// Checks what the arguments ask for, and touches nothing.
+    /// Checks the arguments, and creates nothing.
     pub(super) fn new(args: &Flow, single: bool) -> Result<Self> {
         let mut places = Vec::new();
         if let Some(path) = &args.output {
@@ -120,26 +120,26 @@ impl Targets {
         Ok(targets)
     }
 
-    /// The length shown in full colour, if colours were written.
+    /// The displacement shown in full colour, if colour images were written.
     pub(super) fn scale(&self) -> Option<f32> {
         self.scale.filter(|_| self.colours)
     }
 
-    /// Makes the folders.
+    /// Creates the folders.
     pub(super) fn make_folders(&self) -> Result<()> {
         self.places.iter().try_for_each(|(_, place)| place.make_folder())
     }
 
-    /// Writes the results of the pair of this number.
+    /// Writes the results of pair `number`.
     pub(super) fn write(&mut self, number: u64, pair: &Pair<'_>) -> Result<()> {
-        // All of them first, so that nothing is written if one cannot be.
+        // Encode everything before writing, so that an error leaves no file behind.
         let mut contents = Vec::new();
         for (kind, _) in &self.places {
             contents.push(match kind {
                 Kind::Flow(format) => format.encode(pair.flow)?,
                 Kind::Color => {
                     let (image, scale) = colour_wheel(pair.flow, self.scale)?;
-                    // A sequence keeps its first scale, so that its colours can be compared.
+                    // A sequence keeps its first scale, so that its colours are comparable.
                     self.scale = Some(scale);
                     picture::encode_png(&image)?
                 }
@@ -158,7 +158,7 @@ impl Targets {
     }
 }
 
-/// Checks that the folders can be written into or can be made, and that no result would replace another one.
+/// Checks that the folders are writable or can be created, and that no two results share a file.
 pub(in crate::cli) fn check_places<'a>(places: impl Iterator<Item = &'a Place>) -> Result<()> {
     let mut seen = Vec::new();
     for place in places {
@@ -187,7 +187,7 @@ pub(in crate::cli) fn check_places<'a>(places: impl Iterator<Item = &'a Place>) 
     Ok(())
 }
 
-/// A plane of 0 to 1 as a picture, black to white.
+/// A plane of 0 to 1 as a gray image, black to white.
 pub(in crate::cli) fn gray(plane: &Plane) -> Image {
     // NaN becomes 0.
     let data = plane.data.iter().map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8).collect();
@@ -220,7 +220,7 @@ fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(K
     Ok((Kind::Flow(format), place))
 }
 
-/// A file of one of the given extensions, or a folder of files of one extension.
+/// A file with one of the given extensions, or a folder of files with one extension.
 pub(in crate::cli) fn place(
     path: &Path,
     single: bool,

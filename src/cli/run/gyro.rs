@@ -1,4 +1,4 @@
-//! The gyro's log, and how the gyro belongs to the camera.
+//! The flags of the gyro: its log, its mount and its errors.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -13,37 +13,37 @@ use crate::io::gyro_log;
 use crate::live::GyroFeed;
 use crate::sphere::Derotation;
 
-/// The gyro, and how it belongs to the camera.
+/// The gyro's log, and its relation to the camera.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Gyro")]
 pub(super) struct GyroArgs {
-    /// Log of a gyro, so that the camera's turn is taken out of the flow: time_s,gyro_x_rad_s,… or EuRoC's
+    /// Log of a gyro, by which the flow is derotated: columns time_s,gyro_x_rad_s,… or EuRoC's
     #[arg(long, value_name = "FILE")]
     pub(super) gyro: Option<PathBuf>,
-    /// What the gyro says at rest, in its own frame, in rad/s
+    /// The gyro's reading at rest, in its own frame, in rad/s
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "gyro")]
     gyro_bias: Option<Numbers<3>>,
-    /// What is added to the log's times to get the frames'
+    /// Added to the log's times to give the frames' times, in seconds
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, requires = "gyro")]
     gyro_offset_s: Option<f64>,
-    /// How the gyro is mounted: optical (its axes are the camera's: right, down, forward), frd (forward, right, down), flu
-    /// (forward, left, up), or the 9 numbers of the rotation that takes a direction from the gyro's frame to the camera's,
-    /// row by row [default: optical]
+    /// Mount of the gyro: optical (the camera's axes: right, down, forward), frd (forward, right, down), flu
+    /// (forward, left, up), or 9 numbers: the rotation from the gyro's frame to the camera's, row by row [default:
+    /// optical]
     #[arg(long, value_name = "MOUNT", allow_hyphen_values = true, requires = "gyro")]
     camera_from_gyro: Option<Mount>,
-    /// Where the camera's turn is taken out [default: before]
+    /// Where the camera's rotation is removed from the flow [default: before]
     #[arg(long, value_enum, requires = "gyro")]
     derotation: Option<DerotationArg>,
 }
 
-/// Where the camera's turn is taken out of the flow.
+/// Where the camera's rotation is removed from the flow.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum DerotationArg {
-    /// The frame before is turned first: most accurate in hard turns
+    /// From the previous frame, before the flow is estimated: most accurate in fast rotation
     Before,
-    /// From the flow that was found
+    /// From the estimated flow
     After,
-    /// The same, and the search begins with the turn
+    /// From the estimated flow, whose search starts from the rotation
     Primed,
 }
 
@@ -71,14 +71,14 @@ impl GyroArgs {
         }
     }
 
-    /// The log, to be handed over sample by sample.
+    /// Reads the log, to be fed sample by sample.
     pub(super) fn feed(&self) -> Result<GyroFeed> {
         let samples = self.gyro.as_ref().map(gyro_log::read).transpose()?.unwrap_or_default();
         Ok(GyroFeed::new(samples, self.gyro_offset_s.unwrap_or(0.0)))
     }
 }
 
-/// Numbers between commas or blanks.
+/// Numbers separated by commas or blanks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Numbers<const N: usize>(pub(super) [f64; N]);
 
@@ -93,7 +93,7 @@ impl<const N: usize> FromStr for Numbers<N> {
     }
 }
 
-/// The rotation that takes a direction from the gyro's frame to the camera's.
+/// The rotation from the gyro's frame to the camera's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mount(DMat3);
 

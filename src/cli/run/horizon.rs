@@ -1,4 +1,4 @@
-//! Which way is up, from the attitude at the first frame, carried on by the gyro.
+//! The up direction, from the attitude at the first frame, integrated from the gyro.
 
 use glam::DVec3;
 
@@ -7,13 +7,13 @@ use crate::camera::{FRD_FROM_CAMERA, world_from_body};
 use crate::error::{Error, Result};
 use crate::pipeline::Cue;
 
-/// What is up, as far as it is known.
+/// The up direction, while it is known.
 pub(super) struct Horizon {
     up_camera: Option<DVec3>,
 }
 
 impl Horizon {
-    /// From the camera's roll and pitch at the first frame, in degrees; none where they are not known.
+    /// From the camera's roll and pitch at the first frame, in degrees; unknown if they are.
     pub(super) fn new(level_deg: Option<Numbers<2>>) -> Result<Self> {
         let up = |Numbers([roll_deg, pitch_deg]): Numbers<2>| {
             for (name, value, limit) in [("roll", roll_deg, 180.0), ("pitch", pitch_deg, 90.0)] {
@@ -28,8 +28,8 @@ impl Horizon {
         Ok(Self { up_camera: level_deg.map(up).transpose()? })
     }
 
-    /// Up in the camera's frame at a frame, when it is the next one. From a frame on whose turn is not known it is not
-    /// known either.
+    /// The up direction in the camera's frame at the next frame. Unknown from the first frame on whose rotation is
+    /// unknown.
     pub(super) fn at(&mut self, cue: &Cue<'_>) -> Option<DVec3> {
         if cue.interval_s.is_some() {
             let turned = self.up_camera.zip(cue.prev_from_cur);
@@ -55,7 +55,7 @@ mod tests {
     fn up_is_above_and_turns_with_the_camera_until_a_turn_is_not_known() {
         let up = |text: &str| Horizon::new(Some(text.parse().unwrap())).unwrap().up_camera.unwrap();
         assert!((up("0,0") - DVec3::NEG_Y).length() < 1e-15);
-        // Nose up: what is above is ahead, too. Right wing down: it is to the left.
+        // Nose up: the zenith moves forward. Right wing down: it moves to the left.
         assert!(up("0,20").z > 0.3 && up("20,0").x < -0.3);
         for level in ["181,0", "0,-91", "NaN,0"] {
             assert!(Horizon::new(Some(level.parse().unwrap())).is_err(), "{level}");
@@ -82,7 +82,7 @@ mod tests {
         };
         let mut horizon = Horizon::new(Some("0,0".parse().unwrap())).unwrap();
         assert_eq!(horizon.at(&cue(None, None)), Some(up("0,0")));
-        // About the axis ahead, clockwise: the right wing goes down.
+        // About the forward axis, clockwise: the right wing goes down.
         let right = DMat3::from_rotation_z(0.3);
         let found = horizon.at(&cue(Some(0.1), Some(right))).unwrap();
         assert!((found - up(&format!("{},0", 0.3_f64.to_degrees()))).length() < 1e-12, "{found}");

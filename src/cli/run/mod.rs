@@ -1,4 +1,4 @@
-//! `viewsphere run`: from frames and a gyro to what will be met, where and when.
+//! `viewsphere run`: time to contact per sector of the view, from frames and a gyro.
 
 mod gyro;
 mod horizon;
@@ -28,21 +28,23 @@ use crate::pipeline::{Cue, Pipeline, PipelineConfig};
 use crate::sphere::{Alarm, Sphere};
 use crate::wire::{CueMessage, Timing};
 
-/// Say what will be met, where and when: time to contact per sector of the view, frame by frame.
+/// Report what will be hit, where and when: the time to contact per sector of the view, frame by frame.
 ///
-/// Inputs are pictures (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input.
-/// The camera comes from a file of OpenCV, ROS (camera_info), Kalibr or EuRoC, or with --fov-deg is a pinhole without a
-/// lens. Azimuth is positive to the right and elevation up, from the camera's axis.
+/// Inputs are images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard
+/// input. The camera comes from a file of OpenCV, ROS (camera_info), Kalibr or EuRoC, or with --fov-deg is a pinhole
+/// without distortion. Azimuth is positive to the right and elevation up, from the camera's axis.
 ///
-/// A line a frame goes to standard output, the summary to standard error. A frame whose cue is not to be used says why and
-/// the run goes on: the first one; one too long after the one before; one whose gyro samples are missing, are not numbers
-/// or run backwards; one in which too little can be seen. Without --gyro the camera's turn stays in the flow.
+/// One line per frame goes to standard output, the summary to standard error. A frame without a valid cue reports the
+/// reason, and the run goes on: the first frame; one too long after the previous one; one whose gyro samples are
+/// missing, not finite or out of order; one that shows too little. Without --gyro the camera's rotation stays in the
+/// flow.
 ///
-/// With --json-lines a line is an object: frame, time_s, valid, invalid_kind and invalid (null, or first, interval, gyro,
-/// coverage, lost, frozen, turn, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or null, threat (azimuth_deg,
-/// elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg from left to right, elevation_deg
-/// from top to bottom, and in lists row by row ttc_s, null where nothing is known or comes nearer, and coverage 0 to 1),
-/// timing (age_ms since the frame was there, latency_ms since it was submitted, dropped in all).
+/// With --json-lines each line is an object: frame, time_s, valid, invalid_kind and invalid (null, or first,
+/// interval, gyro, coverage, lost, frozen, turn, and the reason), heading (azimuth_deg, elevation_deg, error_deg) or
+/// null, threat (azimuth_deg, elevation_deg, time_s, sectors, alarm) or null, sectors (columns, rows, azimuth_deg
+/// from left to right, elevation_deg from top to bottom, and as row-major lists ttc_s, null where nothing is known or
+/// nothing approaches, and coverage 0 to 1), timing (age_ms since the frame arrived, latency_ms since it was
+/// submitted, dropped in total).
 #[derive(Args, Debug)]
 #[command(group(ArgGroup::new("view").args(["camera", "fov_deg"]).required(true)))]
 #[command(after_help = "\
@@ -56,67 +58,67 @@ Examples:
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere run - --fov-deg 90
   ffmpeg -f v4l2 -i /dev/video0 -f yuv4mpegpipe - | viewsphere run - --camera cam.yaml --realtime")]
 pub(super) struct Run {
-    /// Pictures; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    /// Images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
     #[arg(required = true)]
     inputs: Vec<String>,
-    /// The camera that took the frames
+    /// Camera file: the camera that took the frames
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// In place of a camera file: a pinhole without a lens that sees this far from the left border to the right one
+    /// Instead of a camera file: the horizontal field of view of a pinhole without distortion, in degrees
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     fov_deg: Option<f64>,
-    /// Frames a second, such as 25 or 30000/1001 [default: the video's, else 30]
+    /// Frame rate in Hz, such as 25 or 30000/1001 [default: the video's, else 30]
     #[arg(long, value_name = "RATE", conflicts_with = "times")]
     fps: Option<FrameRate>,
-    /// The frames' times: EuRoC's `#timestamp [ns],filename`, or one in seconds a line
+    /// Times of the frames: EuRoC's `#timestamp [ns],filename`, or one per line in seconds
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
-    /// What is added to all frames' times, so that they are those of the gyro's log
+    /// Added to all frame times, so that they match those of the gyro's log, in seconds
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
     start_s: f64,
-    /// Columns and rows of sectors
+    /// Sectors of the view, columns × rows
     #[arg(long, value_name = "WxH", default_value = "24x9")]
     sectors: Size,
-    /// What is met within this time is a threat, above 0 and at most 60; an alarm if it was one in the frame before too
-    /// [default: 2]
+    /// A sector with a shorter time to contact is a threat, above 0 and at most 60 s; an alarm if the previous frame
+    /// had one too [default: 2]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     within_s: Option<f64>,
-    /// What is passed at less than this much flying time aside is met, 0 to 60: 0.4 is 2 m at 5 m/s. Low over a ground it
-    /// is a threat too [default: 0.4]
+    /// What passes at less than this much flying time to the side counts as hit, 0 to 60 s: 0.4 is 2 m at 5 m/s. In
+    /// low flight the ground is then a threat too [default: 0.4]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     aside_s: Option<f64>,
-    /// How far each pixel of every frame is to be trusted: a picture (black 0, white 1) or a .npy plane of 0 to 1.
-    /// About doubles the time: what it hides is left out of the flow too
+    /// Certainty of each pixel in every frame: an image (black 0, white 1) or a .npy plane of 0 to 1. About doubles
+    /// the computing time, as masked pixels are left out of the flow estimate too
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Print a JSON object a frame
+    /// Print one JSON object per frame
     #[arg(long, conflicts_with_all = ["quiet", "json"])]
     json_lines: bool,
-    /// Add to each sector ttc_early_s and ttc_late_s (between which most of it lies), nearness_rate_hz, divergence_hz and
-    /// confidence
+    /// Add to each sector ttc_early_s and ttc_late_s (the range that holds most of it), nearness_rate_hz,
+    /// divergence_hz and confidence
     #[arg(long, requires = "json_lines")]
     sector_detail: bool,
-    /// Print nothing but the summary
+    /// Print only the summary
     #[arg(long)]
     quiet: bool,
-    /// Print nothing but the summary, as JSON on standard output
+    /// Print only the summary, as JSON on standard output
     #[arg(long)]
     json: bool,
-    /// Write a video of the frames with what was made of them, to this .y4m or to standard output (-): the flow's colours,
+    /// Write a video of the frames and their results to this .y4m or to standard output (-): the flow in colours,
     /// each sector's time to contact (red below 1 s, orange 2 s, yellow 4 s, green 8 s), the threat and its time, the
-    /// direction of motion, with --level the horizon; a red border where the cue is invalid. Frames that --realtime drops
-    /// are not in it
+    /// direction of motion, with --level the horizon; a red border where the cue is invalid. Frames dropped by
+    /// --realtime are left out
     #[arg(long, value_name = "FILE")]
     overlay: Option<PathBuf>,
-    /// The camera's roll (right side down) and pitch (up) at the first frame, in degrees, for the overlay's horizon: the
-    /// gyro carries it on, up to the first frame whose turn it does not tell
+    /// The camera's roll (right side down) and pitch (up) at the first frame, in degrees, for the overlay's horizon.
+    /// The gyro keeps it up to date until the first frame whose rotation is unknown
     #[arg(long, value_name = "ROLL,PITCH", allow_hyphen_values = true, requires_all = ["overlay", "gyro"])]
     level: Option<Numbers<2>>,
-    /// Take frames as a camera would deliver them: those of files at their times, those of a stream as they come. Of those
-    /// that come while one is computed the newest is kept, and the others are dropped and counted
+    /// Deliver frames as a live camera would: those of files at their times, those of a stream as they arrive. Of the
+    /// frames that arrive during a computation the newest is kept; the others are dropped and counted
     #[arg(long)]
     realtime: bool,
-    /// Size of raw gray frames, one byte a pixel, on standard input
+    /// Size of raw gray frames, one byte per pixel, on standard input
     #[arg(long, value_name = "WxH")]
     raw: Option<Size>,
     #[command(flatten)]
@@ -176,10 +178,10 @@ impl Run {
         };
         config.format = format;
         config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
-        // What the mask hides must not be seen in the flow beside it.
+        // Masked pixels must not affect the flow beside the mask.
         config.certainty = config.mask.is_some();
         let pipeline = Pipeline::new(self.backend.open_unless(self.quiet)?, &camera, &config)?;
-        // What it took to get ready is not the frame's age.
+        // The start-up time is not part of the first frame's age.
         first.arrived = Instant::now();
         let (ideal, rate) = (*pipeline.ideal(), frames.times().rate().fraction());
         let intake = match self.realtime {
@@ -196,7 +198,7 @@ impl Run {
             }
             Some(place) => video::write(&place, |out| {
                 let mut video = Video::new(out, &place, [&camera, &ideal], rate, horizon)?;
-                // What was processed is shown, also where the source fails after it.
+                // Show the frames processed, even if the source fails after them.
                 end = self.frames(&mut session, first, Some(&mut video));
                 video.finish()
             }),
@@ -207,7 +209,7 @@ impl Run {
         end.and(written).map(|()| Outcome::Done)
     }
 
-    /// Frames until the source ends or fails.
+    /// Processes frames until the source ends or fails.
     fn frames(
         &self,
         session: &mut Session,
@@ -235,7 +237,7 @@ impl Run {
         }
     }
 
-    /// Says what there is to say of a frame. Returns false if nobody listens any more.
+    /// Prints a frame's line. Returns false if there is no reader any more.
     fn say(&self, number: u64, cue: &Cue<'_>, timing: Timing) -> Result<bool> {
         if self.quiet || self.json {
             return Ok(true);
@@ -256,7 +258,7 @@ impl Run {
         Ok(FrameTimes::even(rate.unwrap_or(FrameRate::DEFAULT), self.start_s))
     }
 
-    /// A camera without a lens, with square pixels and its axis through the middle.
+    /// A pinhole camera without distortion, with square pixels and its axis through the image's centre.
     fn pinhole(&self, size: Size) -> Result<Camera> {
         let fov_deg = self.fov_deg.unwrap_or(f64::NAN);
         if !(1.0..=170.0).contains(&fov_deg) {
@@ -269,7 +271,7 @@ impl Run {
     }
 }
 
-/// What a run goes on with.
+/// The state of a run.
 struct Session {
     pipeline: Pipeline,
     feed: GyroFeed,

@@ -1,4 +1,4 @@
-//! What is said at the end.
+//! The summary of a run.
 
 use std::time::Instant;
 
@@ -10,11 +10,11 @@ use crate::pipeline::{Invalid, InvalidKind};
 use crate::stream::Latency;
 use crate::text::counted;
 
-/// Figures over all frames.
+/// Statistics over all frames.
 #[derive(Debug, Serialize)]
 pub(super) struct RunSummary {
     backend: String,
-    /// Those that were processed; the dropped ones are not among them.
+    /// The frames processed, without the dropped ones.
     frames: u64,
     valid: u64,
     invalid: ByKind,
@@ -27,7 +27,7 @@ pub(super) struct RunSummary {
     begin: Instant,
 }
 
-/// How many frames were invalid, by the kind of the reason.
+/// The number of invalid frames per kind of reason.
 #[derive(Debug, Default, Serialize)]
 struct ByKind {
     first: u64,
@@ -40,7 +40,7 @@ struct ByKind {
 }
 
 impl ByKind {
-    /// In the order of [`InvalidKind::ALL`].
+    /// The counts in the order of [`InvalidKind::ALL`].
     fn counts(&mut self) -> [&mut u64; InvalidKind::ALL.len()] {
         let Self { first, interval, gyro, coverage, lost, frozen, turn } = self;
         [first, interval, gyro, coverage, lost, frozen, turn]
@@ -79,7 +79,7 @@ impl RunSummary {
         self.dropped = dropped;
     }
 
-    /// To standard output as JSON, or to standard error.
+    /// Prints to standard output as JSON, or to standard error as text.
     pub(super) fn print(&mut self, json: bool) -> Result<()> {
         if json {
             return print::json(self);

@@ -1,8 +1,8 @@
-//! A frame's cue as a line to read.
+//! A frame's cue as a line of text.
 
 use crate::pipeline::Cue;
 
-/// The line for the frame of a number.
+/// The line for frame `number`.
 pub(super) fn text(number: u64, cue: &Cue<'_>) -> String {
     let state = match (&cue.invalid, &cue.threat) {
         (Some(reason), _) => format!("invalid: {reason}"),

@@ -1,4 +1,4 @@
-//! The overlay's video.
+//! The overlay as a video.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::live::TimedFrame;
 use crate::pipeline::Cue;
 use crate::report::Overlay;
 
-/// Where a video goes, checked before anything is computed.
+/// The destination of the video, checked before the computation starts.
 pub(super) fn target(path: &Path, lines: bool) -> Result<Place> {
     let place = place(path, true, "y4m", &["y4m"])?;
     match &place {
@@ -21,14 +21,14 @@ pub(super) fn target(path: &Path, lines: bool) -> Result<Place> {
             return Err(Error::parameter("--overlay", folder.display(), "a .y4m file, not a folder"));
         }
         Place::Stdout if lines => {
-            return Err(Error::parameter("--overlay", "-", "--quiet beside it, as lines go there too"));
+            return Err(Error::parameter("--overlay", "-", "--quiet with it, as lines go there too"));
         }
         Place::Stdout | Place::File(_) => check_places([&place].into_iter())?,
     }
     Ok(place)
 }
 
-/// Gives `content` what it can write a video to. A file is whole or not there.
+/// Calls `content` with a writer for the video. A file appears only once it is complete.
 pub(super) fn write(place: &Place, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     match place {
         Place::File(path) => write_atomic(path, content),
@@ -60,7 +60,7 @@ impl<'a> Video<'a> {
         Ok(Self { overlay: Overlay::new(raw, ideal)?, horizon, writer, failed: None })
     }
 
-    /// Adds a frame. Returns false if that failed, which [`Video::finish`] then tells.
+    /// Adds a frame. Returns false on failure, whose error [`Video::finish`] returns.
     pub(super) fn add(&mut self, taken: &TimedFrame, cue: &Cue<'_>) -> bool {
         let Self { overlay, horizon, writer, failed } = self;
         overlay.set_up(horizon.at(cue));
@@ -70,14 +70,14 @@ impl<'a> Video<'a> {
         failed.is_none()
     }
 
-    /// Ends the video.
+    /// Completes the video.
     pub(super) fn finish(self) -> Result<()> {
         let end = match self.failed {
             Some(error) => Err(error),
             None => self.writer.finish().map(|_| ()),
         };
         match end {
-            // Who looked on has had enough.
+            // A closed pipe means that the viewer has seen enough.
             Err(Error::Io { source, .. }) if source.kind() == io::ErrorKind::BrokenPipe => Ok(()),
             end => end,
         }

@@ -1,4 +1,4 @@
-//! `viewsphere undistort`: pictures as a camera without a lens would show them.
+//! `viewsphere undistort`: images as a camera without distortion would show them.
 
 mod resample;
 
@@ -18,16 +18,16 @@ use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW};
 use crate::io::{self, picture};
 use crate::report::arrows;
 
-/// There are about so many arrows in a row of the field's picture.
+/// About the number of arrows in a row of the displacement field's image.
 const ARROWS: u32 = 40;
 
-/// Show pictures as a camera without a lens would: straight lines are straight.
+/// Remove the lens distortion from images, so that straight lines are straight.
 ///
-/// The camera file is one of OpenCV, ROS (camera_info), Kalibr (its cam0) or EuRoC. Inputs are a picture (PNG, JPEG, PGM,
-/// PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input. For one picture -o names a .png or
-/// is - for standard output; for everything else a folder. Colour and 16-bit pictures stay what they are; videos are gray.
-/// Places that the original does not show are black. Without --keep-all and --crop the focal length and the principal point
-/// stay as they are.
+/// The camera file is one of OpenCV, ROS (camera_info), Kalibr (its cam0) or EuRoC. Inputs are an image (PNG, JPEG,
+/// PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input. For one image -o names a
+/// .png or is - for standard output; for everything else a folder. Colour and 16-bit images keep their format; videos
+/// become gray. Pixels that the original does not show are black. Without --keep-all and --crop the focal length and
+/// the principal point stay the same.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -37,10 +37,10 @@ Examples:
   viewsphere undistort --camera cam.yaml 'frames/%04d.png' -o straight/ --keep-all --size 800x600
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere undistort --camera cam.yaml - -o straight/")]
 pub(super) struct Undistort {
-    /// A picture; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
+    /// An image; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
     #[arg(required = true)]
     inputs: Vec<String>,
-    /// The camera that took the pictures
+    /// Camera file: the camera that took the images
     #[arg(long, value_name = "FILE")]
     camera: PathBuf,
     /// Write the result to this .png or into this folder; - is standard output
@@ -49,22 +49,22 @@ pub(super) struct Undistort {
     /// Show everything that the original shows
     #[arg(long, conflicts_with = "crop")]
     keep_all: bool,
-    /// Show only what the original shows, with nothing black at the borders
+    /// Show only what the original shows, without black borders
     #[arg(long)]
     crop: bool,
-    /// Size of the result; without it that of the original
+    /// Size of the result [default: that of the original]
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
-    /// Write the first picture with arrows from where things are to where they would be without the lens, to this .png
+    /// Write the first image, with arrows from each point to its undistorted position, to this .png
     #[arg(long, value_name = "FILE")]
     field: Option<PathBuf>,
     /// Write the camera of the result to this file
     #[arg(long, value_name = "FILE")]
     write_camera: Option<PathBuf>,
-    /// Format of that file
+    /// Format of the camera file written
     #[arg(long, value_enum, default_value_t = FormatArg::Opencv, requires = "write_camera")]
     camera_format: FormatArg,
-    /// Size of raw gray frames, one byte a pixel, on standard input
+    /// Size of raw gray frames, one byte per pixel, on standard input
     #[arg(long, value_name = "WxH")]
     raw: Option<Size>,
     #[command(flatten)]
@@ -82,7 +82,7 @@ enum FormatArg {
     Kalibr,
 }
 
-/// Where the results go.
+/// The destinations of the results.
 struct Places {
     output: Option<Place>,
     field: Option<Place>,
@@ -144,10 +144,10 @@ impl Undistort {
         }
     }
 
-    /// Checks what the arguments ask for, and touches nothing.
+    /// Checks the arguments, and creates nothing.
     fn places(&self, single: bool) -> Result<Places> {
         if self.output.is_none() && self.field.is_none() && self.write_camera.is_none() {
-            return Err(Error::parameter("-o", "missing", "it, --field or --write-camera"));
+            return Err(Error::parameter("-o", "missing", "-o, --field or --write-camera"));
         }
         let one = |path: &Option<PathBuf>, kinds: &[&str]| {
             path.as_ref().map(|path| place(path, true, "png", kinds)).transpose()
@@ -189,13 +189,13 @@ fn frames(
     Ok(())
 }
 
-/// The picture with arrows from where things are to where the same camera without its lens would show them.
+/// The image with arrows from each point to its position in the same camera without distortion.
 fn field(raw: &Camera, image: &Image) -> Result<Image> {
     let ideal = Camera { lens: Lens::NONE, ..*raw };
     let step = (raw.size.width / ARROWS).max(8);
     let width = raw.size.width as usize;
     let mut flow = FlowField { size: raw.size, data: vec![[UNKNOWN_FLOW; 2]; raw.size.pixels()] };
-    // Only where an arrow begins is a displacement needed.
+    // Compute displacements only where an arrow begins.
     for v in (step / 2..raw.size.height).step_by(step as usize) {
         for u in (step / 2..raw.size.width).step_by(step as usize) {
             let pixel = [f64::from(u), f64::from(v)];
@@ -207,7 +207,7 @@ fn field(raw: &Camera, image: &Image) -> Result<Image> {
     arrows(&image.frame()?, &flow, step, 1.0)
 }
 
-/// A bar on standard error, where that is a terminal.
+/// A progress bar on standard error, where that is a terminal.
 fn progress(frames: Option<u64>) -> ProgressBar {
     let style = |template: &str| {
         ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())

@@ -1,4 +1,4 @@
-//! A picture as another camera would show it, on either executor.
+//! Resampling of an image to another camera, on either backend.
 
 use crate::backend::Backend;
 use crate::camera::Camera;
@@ -9,7 +9,7 @@ use crate::plan::{Bufs, Fill, Plan, Port, PortKind, Shape, Step, Value};
 use crate::runner::Runner;
 use crate::sphere::{MOTION_LEN, Motion};
 
-/// The map from one camera's picture to another's, computed once, and what resamples pictures by it.
+/// The map from one camera's image to another's, computed once, and the runner that resamples images by it.
 pub(super) struct Resample {
     runner: Runner,
     raw_size: Size,
@@ -26,13 +26,13 @@ impl Resample {
         Ok(Self { runner, raw_size: raw.size, out_size: out.size, certainty })
     }
 
-    /// Part of the result that the raw picture shows.
+    /// The share of the result that the raw image covers.
     pub(super) fn share(&self) -> f64 {
         let sum: f64 = self.certainty.data.iter().map(|c| f64::from(*c)).sum();
         sum / self.out_size.pixels() as f64
     }
 
-    /// The picture as the other camera shows it, in the same format. Outside the raw picture it is black.
+    /// The image as the other camera shows it, in the same format. Pixels outside the raw image are black.
     pub(super) fn apply(&mut self, image: &Image) -> Result<Image> {
         let (size, format) = (self.out_size, image.format);
         let channels = if format == PixelFormat::Gray16 { 1 } else { format.bytes() };
@@ -42,7 +42,7 @@ impl Resample {
             let outputs = self.runner.run(&[("picture", Some(Value::Plane(&plane)))])?;
             let found =
                 outputs.plane("resampled").unwrap_or_else(|| unreachable!("the plan has this output"));
-            // How opaque a pixel is has nothing to do with how bright.
+            // Opacity is not brightness: it stays where the colours fade to black.
             let alpha = channel == 3;
             let values = found.data.iter().zip(&self.certainty.data);
             let values = values.map(|(v, c)| if alpha { *v } else { v * c });
@@ -59,7 +59,7 @@ impl Resample {
     }
 }
 
-/// The map once, then one channel of a picture through it.
+/// A plan that computes the map once, and then resamples one channel of an image per run.
 fn plan(raw: &Camera, out: &Camera) -> Result<Plan> {
     let (from, to) = (Shape::planar(raw.size, 1), Shape::planar(out.size, 1));
     let mut bufs = Bufs::default();
@@ -97,7 +97,7 @@ fn plan(raw: &Camera, out: &Camera) -> Result<Plan> {
     Ok(plan)
 }
 
-/// The values of one channel of a picture.
+/// The values of one channel of an image, row by row.
 fn channel_of(image: &Image, channel: usize) -> Vec<f32> {
     let bytes = image.format.bytes();
     let value = |pixel: &[u8]| match (image.format, pixel) {

@@ -7,16 +7,16 @@ use super::{from_intrinsics, lens, number, text};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 
-/// The camera `cam0` from the bytes of a file. See [`decode_named`].
+/// Decodes the camera `cam0` of a file. See [`decode_named`].
 ///
 /// # Errors
-/// As [`decode_named`].
+/// As in [`decode_named`].
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Camera> {
     decode_named(path, bytes, "cam0")
 }
 
-/// The camera of this name from the bytes of a file. `path` is the name for error messages. It is not yet checked whether
-/// the lens makes sense: see [`Camera::validate`].
+/// Decodes the camera of this name from the bytes of a file. `path` is the name for error messages. The camera is not
+/// yet validated: see [`Camera::validate`].
 ///
 /// # Errors
 /// [`Error::Format`] if there is no such camera, or naming the key that is missing or wrong.
@@ -29,17 +29,12 @@ pub(super) fn from_yaml(chain: &Yaml<'_>, name: &str) -> Result<Camera> {
     if yaml.keys().is_empty() {
         let cameras: Vec<&str> = chain.keys().into_iter().filter(|key| key.starts_with("cam")).collect();
         let expected = format!("one of {}", cameras.join(", "));
-        return Err(Error::format(
-            chain.path,
-            "camera",
-            format_args!("{name}, which is not there"),
-            expected,
-        ));
+        return Err(Error::format(chain.path, "camera", format_args!("{name}, which is missing"), expected));
     }
     from_sensor(&yaml, "distortion_coeffs", "radtan")
 }
 
-/// The keys that Kalibr and EuRoC share.
+/// Reads the keys that Kalibr and EuRoC share.
 pub(super) fn from_sensor(yaml: &Yaml<'_>, coefficients: &'static str, radtan: &str) -> Result<Camera> {
     let model = yaml.word("camera_model");
     if model != "pinhole" {
@@ -56,7 +51,7 @@ pub(super) fn from_sensor(yaml: &Yaml<'_>, coefficients: &'static str, radtan: &
     Ok(from_intrinsics(size, intrinsics, lens(yaml.path, "distortion_coeffs", &coefficients)?))
 }
 
-/// The bytes of a file with this camera as `cam0`.
+/// Encodes a file with this camera as `cam0`.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the lens has more than the four coefficients that the format can hold.
@@ -85,7 +80,7 @@ mod tests {
     use crate::camera::Lens;
     use crate::frame::Size;
 
-    /// As kalibr_calibrate_imu_camera writes it.
+    /// A file as kalibr_calibrate_imu_camera writes it.
     const FILE: &str = "cam0:
   T_cam_imu:
   - [0.01779318, 0.99967549, -0.01822936, 0.07008565]
@@ -127,7 +122,7 @@ cam1:
         assert_eq!(load(FILE, "cam1").unwrap().f_u, 459.357);
         assert_eq!(
             load(FILE, "cam2").unwrap_err().to_string(),
-            "a.yaml: camera is cam2, which is not there, expected one of cam0, cam1"
+            "a.yaml: camera is cam2, which is missing, expected one of cam0, cam1"
         );
     }
 

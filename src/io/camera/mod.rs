@@ -1,4 +1,4 @@
-//! Camera files. Each format has its own module; [`read`] finds out which one it is.
+//! Camera files. Each format has its own module; [`read`] detects the format.
 
 pub mod kalibr;
 pub mod opencv;
@@ -15,10 +15,10 @@ use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::io::write_bytes;
 
-/// No camera file is longer: OpenCV's may hold every corner that was ever seen.
+/// The longest camera file: OpenCV's may hold every corner that was detected.
 const MAX_FILE: u64 = 64 << 20;
 
-/// Formats that are written.
+/// Formats that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// OpenCV's FileStorage YAML.
@@ -29,10 +29,11 @@ pub enum Format {
     Kalibr,
 }
 
-/// Reads a camera from a file of OpenCV, ROS, Kalibr (its `cam0`) or EuRoC, and checks it with [`Camera::validate`].
+/// Reads a camera from a file of OpenCV, ROS, Kalibr (its `cam0`) or EuRoC, and validates it with
+/// [`Camera::validate`].
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Format`] naming the key that is missing or wrong, or what cannot be right about the camera.
+/// [`Error::Io`]; [`Error::Format`] naming the key that is missing or wrong, or the parameter that is implausible.
 pub fn read(path: impl AsRef<Path>) -> Result<Camera> {
     let path = path.as_ref();
     let mut bytes = Vec::new();
@@ -47,11 +48,11 @@ pub fn read(path: impl AsRef<Path>) -> Result<Camera> {
     Ok(camera)
 }
 
-/// A camera from the bytes of a file of any of the formats, not yet checked by [`Camera::validate`]. `path` is the name
-/// for error messages.
+/// Decodes a camera from the bytes of a file of any of the formats, not yet validated by [`Camera::validate`]. `path`
+/// is the name for error messages.
 ///
 /// # Errors
-/// [`Error::Format`] as [`read`].
+/// [`Error::Format`] as in [`read`].
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Camera> {
     let text = text(path, bytes)?;
     let yaml = Yaml::parse(path, text)?;
@@ -90,7 +91,7 @@ pub fn write(path: impl AsRef<Path>, camera: &Camera, format: Format) -> Result<
     write_bytes(path, &bytes)
 }
 
-/// An error about a value, as one about the file that it is from.
+/// Turns an error about a parameter into one about the file that states it.
 fn in_file(path: &Path, error: Error) -> Error {
     match error {
         Error::Parameter { name, value, expected } => Error::format(path, name, value, expected),
@@ -128,8 +129,8 @@ fn from_matrix(path: &Path, size: Size, matrix: [f64; 9], lens: Lens) -> Result<
     Ok(from_intrinsics(size, [f_u, f_v, u_0, v_0], lens))
 }
 
-/// A number in 17 digits, which is exact, and with a point and a signed exponent, without which some YAML readers see a
-/// word.
+/// A number in 17 digits, which is exact, with a point and a signed exponent, without which some YAML readers take it
+/// for a word.
 fn number(value: f64) -> String {
     if value == 0.0 {
         return "0.".to_owned();

@@ -7,8 +7,8 @@ use super::{from_matrix, lens, number, text};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 
-/// A camera from the bytes of a file. `path` is the name for error messages. It is not yet checked whether the lens makes
-/// sense: see [`Camera::validate`].
+/// Decodes a camera from the bytes of a file. `path` is the name for error messages. The camera is not yet validated:
+/// see [`Camera::validate`].
 ///
 /// # Errors
 /// [`Error::Format`] naming the key that is missing or wrong.
@@ -25,14 +25,14 @@ pub(super) fn from_yaml(yaml: &Yaml<'_>) -> Result<Camera> {
     let matrix = yaml.array::<9>("camera_matrix/data")?;
     let key = yaml.name(&["distortion_coefficients/data", "distortion_coefficients"]);
     let mut coefficients = yaml.numbers(key)?;
-    // Thin prisms and a tilted sensor, which the longer lists are for, are mostly written without being calibrated.
+    // The longer lists add thin prisms and a tilted sensor, which are mostly written without being calibrated.
     if [12, 14].contains(&coefficients.len()) && coefficients[8..].iter().all(|c| *c == 0.0) {
         coefficients.truncate(8);
     }
     from_matrix(yaml.path, size, matrix, lens(yaml.path, key, &coefficients)?)
 }
 
-/// The bytes of a file.
+/// Encodes a file.
 pub fn encode(camera: &Camera) -> Vec<u8> {
     let Camera { size, f_u, f_v, u_0, v_0, lens } = *camera;
     let matrix = [f_u, 0.0, u_0, 0.0, f_v, v_0, 0.0, 0.0, 1.0];
@@ -58,7 +58,7 @@ mod tests {
     use crate::camera::Lens;
     use crate::frame::Size;
 
-    /// As OpenCV 4's camera_calibration sample writes it.
+    /// A file as OpenCV 4's camera_calibration sample writes it.
     const FILE: &str = "%YAML:1.0
 ---
 calibration_time: \"Tue Nov  3 10:11:12 2026\"

@@ -7,8 +7,8 @@ use super::{from_matrix, lens, number, text};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 
-/// A camera from the bytes of a file. `path` is the name for error messages. It is not yet checked whether the lens makes
-/// sense: see [`Camera::validate`].
+/// Decodes a camera from the bytes of a file. `path` is the name for error messages. The camera is not yet validated:
+/// see [`Camera::validate`].
 ///
 /// # Errors
 /// [`Error::Format`] naming the key that is missing or wrong.
@@ -43,7 +43,7 @@ pub(super) fn from_yaml(yaml: &Yaml<'_>) -> Result<Camera> {
     from_matrix(yaml.path, size, matrix, lens(yaml.path, key, &coefficients)?)
 }
 
-/// The bytes of a file.
+/// Encodes a file.
 pub fn encode(camera: &Camera) -> Vec<u8> {
     let Camera { size, f_u, f_v, u_0, v_0, lens } = *camera;
     let coefficients = lens.shortest();
@@ -71,7 +71,7 @@ mod tests {
     use crate::camera::Lens;
     use crate::frame::Size;
 
-    /// As camera_calibration writes it.
+    /// A file as camera_calibration writes it.
     const FILE: &str = "image_width: 640
 image_height: 480
 camera_name: narrow_stereo
@@ -100,7 +100,7 @@ projection_matrix:
            0.     ,   0.     ,   1.     ,   0.     ]
 ";
 
-    /// As `rostopic echo` prints it.
+    /// A message as `rostopic echo` prints it.
     const MESSAGE: &str = "header: 
   seq: 12
   stamp: 
@@ -141,7 +141,7 @@ header:
     fn files_and_messages_are_read() {
         assert_eq!(load(FILE).unwrap(), camera());
         assert_eq!(load(MESSAGE).unwrap(), camera());
-        // ros2 topic echo: small letters, and a line a number.
+        // ros2 topic echo: lower-case keys, and one line per number.
         let lines = |list: &str| list.split(", ").map(|n| format!("- {n}\n")).collect::<String>();
         let ros2 = format!(
             "height: 480\nwidth: 640\ndistortion_model: plumb_bob\nd:\n{}k:\n{}---\n",

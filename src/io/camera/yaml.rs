@@ -1,8 +1,8 @@
-//! As much of YAML as camera files need: keys within keys, lists, numbers and words.
+//! The subset of YAML in camera files: nested keys, lists, numbers and words.
 //!
-//! A reader of its own, because the files are not quite YAML: OpenCV writes `%YAML:1.0`, which no YAML version allows, and
-//! tags of its own, at which ordinary readers stop; and because a general reader would be larger than everything else
-//! here. What is not understood is skipped, and missing when it is asked for.
+//! A parser of our own, because the files are not quite YAML: OpenCV writes `%YAML:1.0`, which no YAML version
+//! allows, and tags of its own, at which ordinary parsers stop; and because a general parser would be larger than
+//! everything else here. What the parser does not understand is skipped, and reported as missing on request.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 
-/// Keys further inside are of no interest.
+/// The deepest nesting that is read; deeper keys are not needed.
 const MAX_DEPTH: usize = 4;
 
 /// The values of a file by their keys, in lower case and joined by `/`. Lists are flattened.
@@ -22,7 +22,7 @@ pub(super) struct Yaml<'a> {
 impl<'a> Yaml<'a> {
     pub(super) fn parse(path: &'a Path, text: &str) -> Result<Self> {
         let mut values = BTreeMap::new();
-        // The keys around the line, with their indents.
+        // The enclosing keys of the line, with their indents.
         let mut around: Vec<(usize, String)> = Vec::new();
         let mut lines = text.trim_start_matches('\u{feff}').lines();
         let mut begun = false;
@@ -44,13 +44,13 @@ impl<'a> Yaml<'a> {
                 continue;
             }
             begun = true;
-            // Items may stand below the first letter of their key.
+            // Items may be indented as little as their key.
             while around.last().is_some_and(|(of, _)| *of > indent || (*of == indent && !is_item)) {
                 around.pop();
             }
             let value = if is_item {
                 let value = content.trim_start_matches(['-', ' ']);
-                // The sign of a number belongs to it.
+                // The sign belongs to the number.
                 let start = content.len() - value.len();
                 let signed = start > 0 && content.as_bytes()[start - 1] == b'-';
                 if signed { &content[start - 1..] } else { value }
@@ -72,14 +72,14 @@ impl<'a> Yaml<'a> {
                 list.push_str(without_comment(more).trim());
             }
             if !is_item && values.contains_key(&key) {
-                return Err(Error::format(path, "a key", format_args!("there twice: {key}"), "once"));
+                return Err(Error::format(path, "a key", format_args!("repeated: {key}"), "once"));
             }
             values.entry(key).or_insert_with(Vec::new).extend(scalars(&list));
         }
         Ok(Self { path, values })
     }
 
-    /// What stands within a key.
+    /// The values within a key.
     pub(super) fn within(&self, key: &str) -> Yaml<'a> {
         let prefix = format!("{key}/");
         let inside = |(name, values): (&String, &Vec<String>)| {
@@ -99,12 +99,12 @@ impl<'a> Yaml<'a> {
         self.values.contains_key(key)
     }
 
-    /// A word, or an empty one where there is none.
+    /// The word at a key, empty if it is missing.
     pub(super) fn word(&self, key: &str) -> &str {
         self.values.get(key).and_then(|values| values.first()).map_or("", String::as_str)
     }
 
-    /// The first of several names under which something is there. The first one if it is under none.
+    /// The first of several names that has a value, else the first of all.
     pub(super) fn name(&self, names: &[&'static str]) -> &'static str {
         names.iter().copied().find(|name| self.has(name)).unwrap_or(names[0])
     }
@@ -120,7 +120,7 @@ impl<'a> Yaml<'a> {
         values.iter().map(number).collect()
     }
 
-    /// Exactly so many numbers.
+    /// Exactly N numbers.
     pub(super) fn array<const N: usize>(&self, key: &'static str) -> Result<[f64; N]> {
         let numbers = self.numbers(key)?;
         <[f64; N]>::try_from(numbers).map_err(|numbers| {
@@ -134,7 +134,7 @@ impl<'a> Yaml<'a> {
         })
     }
 
-    /// The size of the pictures, from the values of a key with two numbers or of two keys.
+    /// The image size, from one key with two numbers or from two keys.
     pub(super) fn size(&self, keys: &[&'static str]) -> Result<Size> {
         let numbers = match keys {
             [both] => self.array::<2>(both)?,
@@ -158,7 +158,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// The line up to a `#` that begins a comment.
+/// The line up to a `#` that starts a comment.
 fn without_comment(line: &str) -> &str {
     let mut quote = None;
     let mut before = ' ';
@@ -175,7 +175,7 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Key and value of `key: value` or `key:`.
+/// The key and value of `key: value` or `key:`.
 fn split_key(content: &str) -> Option<(&str, &str)> {
     let (key, value) = match content.strip_suffix(':') {
         Some(key) if !content.contains(": ") => (key, ""),
@@ -186,7 +186,7 @@ fn split_key(content: &str) -> Option<(&str, &str)> {
     Some((key.trim(), value.trim()))
 }
 
-/// The value without tags (`!!opencv-matrix`) and anchors (`&x`) before it.
+/// The value without preceding tags (`!!opencv-matrix`) and anchors (`&x`).
 fn without_tags(mut value: &str) -> &str {
     while value.starts_with(['!', '&']) {
         value = value.split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim_start());
@@ -258,6 +258,6 @@ mod tests {
         assert_eq!(text(yaml.numbers("d")), "a.yaml: d is missing, expected a list of numbers");
         let error = |text| Yaml::parse(Path::new("a.yaml"), text).err().unwrap().to_string();
         assert_eq!(error("a: [1,\n2"), "a.yaml: a list is never closed: a, expected a ]");
-        assert_eq!(error("a: 1\na: 2"), "a.yaml: a key is there twice: a, expected once");
+        assert_eq!(error("a: 1\na: 2"), "a.yaml: a key is repeated: a, expected once");
     }
 }

@@ -1,33 +1,33 @@
-//! Which columns of a log are the time and the rates, by the names in its first line.
+//! The columns of a log, by the names in its first line.
 
-/// What a header must look like, for messages.
+/// The expected header, for messages.
 pub(super) const EXPECTED: &str =
     "time_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s or EuRoC's #timestamp [ns],w_RS_S_x [rad s^-1],…";
 
-/// What stands before the axis' letter. The first is ours, the second EuRoC's.
+/// The names before the axis' letter. The first is ours, the second EuRoC's.
 const RATES: [&str; 10] =
     ["gyro_", "w_rs_s_", "gyro", "g", "w", "w_", "omega_", "gyro.", "angular_velocity_", "angular_velocity."];
 const TIMES: [&str; 4] = ["time", "timestamp", "t", "stamp"];
 
-/// How the numbers of a line become a sample.
+/// How the columns of a line become a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Columns {
-    /// How many a line has.
+    /// The number of columns.
     pub(super) count: usize,
-    /// Where the time is, and its units in a second.
+    /// The index of the time, and the number of its units per second.
     pub(super) time: usize,
     pub(super) per_second: f64,
-    /// Where the rates are, and the radians in one of their units.
+    /// The indices of the rates, and the radians in one of their units.
     pub(super) rates: [usize; 3],
     pub(super) radians: f64,
 }
 
 impl Columns {
-    /// Those of a log without a header: the time in seconds, three rates in rad/s.
+    /// The columns of a log without a header: the time in seconds, three rates in rad/s.
     pub(super) const PLAIN: Self =
         Self { count: 4, time: 0, per_second: 1.0, rates: [1, 2, 3], radians: 1.0 };
 
-    /// Those that a header names.
+    /// The columns that a header names.
     pub(super) fn of_header(line: &str) -> Option<Self> {
         let names: Vec<[String; 2]> = line.trim_start_matches('#').split(',').map(name_and_unit).collect();
         let column = |fits: &dyn Fn(&str) -> bool| names.iter().position(|[name, _]| fits(name));
@@ -59,7 +59,7 @@ impl Columns {
     }
 }
 
-/// `w_RS_S_x [rad s^-1]`, `time(ns)` and `gyro_x_deg_s` as name and unit, in lower case.
+/// The name and unit, in lower case, of a field such as `w_RS_S_x [rad s^-1]`, `time(ns)` or `gyro_x_deg_s`.
 fn name_and_unit(field: &str) -> [String; 2] {
     let field = field.trim().to_lowercase();
     if let Some((name, unit)) = field.split_once(['[', '(']) {

@@ -13,31 +13,32 @@ use crate::error::{Error, Result};
 use crate::imu::GyroSample;
 use crate::io::write_atomic;
 
-/// No line of a log is longer, so that a file of another kind is not read into memory whole.
+/// The longest line, so that a file of another kind is not read into memory whole.
 const MAX_LINE: u64 = 4096;
 
-/// The samples of a log, in the order of its lines.
+/// Reads the samples of a log, in the order of its lines.
 ///
-/// The first line may name the columns: `time_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s` is what [`write`] writes,
-/// EuRoC's `#timestamp [ns],w_RS_S_x [rad s^-1],…` is understood as well, with more columns and in any order, with
-/// times in s, ms, µs or ns and rates in rad/s or deg/s. Without such a line there are four columns: seconds, rad/s.
+/// The first line may name the columns: [`write`] writes `time_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s`, and EuRoC's
+/// `#timestamp [ns],w_RS_S_x [rad s^-1],…` is understood as well, with further columns and in any order, with times
+/// in s, ms, µs or ns and rates in rad/s or deg/s. Without such a line there are four columns: seconds and three
+/// rates in rad/s.
 ///
-/// Samples that are not numbers (`nan`) and those that run backwards in time are kept: it is for [`Gyro`](crate::imu::Gyro)
-/// to say which frames they spoil.
+/// Samples that are not finite (`nan`) and those that run backwards in time are kept:
+/// [`Gyro`](crate::imu::Gyro) decides which frames they invalidate.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Format`] naming the line that has another number of columns or a word in place of a number;
-/// for a header that names no gyro; for a log of no samples.
+/// [`Error::Io`]; [`Error::Format`] naming the line that has another number of columns or a word instead of a number;
+/// for a header that names no gyro; for a log without samples.
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<GyroSample>> {
     let path = path.as_ref();
     let file = File::open(path).map_err(|source| Error::io(path, source))?;
     decode(path, BufReader::new(file))
 }
 
-/// [`read`] from any reader. `path` is the name for error messages.
+/// Decodes a log from any reader, as [`read`] does. `path` is the name for error messages.
 ///
 /// # Errors
-/// As [`read`].
+/// As in [`read`].
 pub fn decode(path: &Path, mut log: impl BufRead) -> Result<Vec<GyroSample>> {
     let mut samples = Vec::new();
     let mut columns = None;
@@ -55,7 +56,7 @@ pub fn decode(path: &Path, mut log: impl BufRead) -> Result<Vec<GyroSample>> {
             return wrong("a longer line", "lines of at most 4096 bytes");
         }
         let line = String::from_utf8_lossy(&bytes);
-        // A byte order mark is what spreadsheets begin a text with.
+        // Spreadsheets start a text with a byte order mark.
         let line = line.trim_start_matches('\u{feff}').trim();
         if line.is_empty() {
             continue;
@@ -95,7 +96,7 @@ fn sample(line: &str, columns: &Columns) -> Option<GyroSample> {
     })
 }
 
-/// A line as it fits into a message.
+/// A line, shortened for a message.
 fn shorten(line: &str) -> String {
     match line.char_indices().nth(60) {
         Some((end, _)) => format!("{}…", &line[..end]),
@@ -103,7 +104,7 @@ fn shorten(line: &str) -> String {
     }
 }
 
-/// Writes a log, whole or not at all. [`read`] gives back the same numbers to the last bit.
+/// Writes a log atomically. [`read`] returns the same numbers to the last bit.
 ///
 /// # Errors
 /// [`Error::Io`].

@@ -5,17 +5,17 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::sim::flight::{Fault, FaultKind};
 
-/// What goes wrong in a flight: none, one fault or several. As text `none`, or faults with `+` between them, such as
+/// The faults of a flight: none, one or several. As text `none`, or faults joined by `+`, such as
 /// `black:2..3+gyro-lost:4`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// Checks that each of them can happen where this computes the flow: a device must be there to be destroyed. What the
-    /// sensor has to do with it, [`Fault::check`] says.
+    /// Checks that each fault can occur on the backend that computes the flow: only a GPU has a device to destroy.
+    /// [`Fault::check`] checks it against the sensor.
     ///
     /// # Errors
-    /// [`Error::Parameter`] naming the first that cannot.
+    /// [`Error::Parameter`] naming the first fault that cannot.
     pub fn check(&self, flow: &Backend) -> Result<()> {
         let destroys = |fault: &&Fault| fault.kind == FaultKind::DeviceLost;
         match self.0.iter().find(destroys) {
@@ -27,7 +27,7 @@ impl Faults {
         }
     }
 
-    /// Whether a device is destroyed.
+    /// Whether a fault destroys the device.
     pub fn destroy(&self) -> bool {
         self.0.iter().any(|fault| fault.kind == FaultKind::DeviceLost)
     }

@@ -9,41 +9,41 @@ use crate::sim::CourseKind;
 use crate::sim::flight::{Flight, FlightConfig, Sensor, Summary, camera};
 use crate::steer::{Danger, Policy, SteerParams};
 
-/// What distinguishes the flights of a campaign but for their seeds: a row of its table.
+/// The setting of a flight: everything that distinguishes it but the seed. A row of the campaign's table.
 ///
-/// As text the fields in their order with `/` between them: `forest/images/arc/nearness/12/320x240/1/none`.
+/// As text, the fields in their order, separated by `/`: `forest/images/arc/nearness/12/320x240/1/none`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// The world's generator.
     pub world: CourseKind,
-    /// What is steered by.
+    /// What the vehicle steers by.
     pub sensor: Sensor,
-    /// How a command is found.
+    /// The steering policy.
     pub policy: Policy,
-    /// What counts as near.
+    /// The measure of danger.
     pub danger: Danger,
     /// Airspeed, m/s.
     pub speed_m_s: f64,
-    /// Size of the pictures, in pixels.
+    /// Image size, in pixels.
     pub size: Size,
-    /// Frames from an exposure until its command acts.
+    /// Frames from an exposure until its command takes effect.
     pub latency_frames: u32,
-    /// What goes wrong.
+    /// The faults that occur.
     pub faults: Faults,
 }
 
 /// A flight of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// How it is flown.
+    /// The setting.
     pub setting: Setting,
-    /// Through which world of its kind.
+    /// The world's seed.
     pub seed: u64,
 }
 
 impl Setting {
-    /// The order of a table's rows: by world, then from what is known exactly to what a camera gives, then from the simplest
-    /// policy on.
+    /// The order of a table's rows: by world, then from exact to camera-based sensing, then from the simplest policy
+    /// on.
     pub fn order(&self, other: &Self) -> Ordering {
         let world = |setting: &Self| setting.world.to_string();
         let rest = |s: &Self| (s.size.width, s.size.height, s.latency_frames, s.faults.to_string());
@@ -56,12 +56,12 @@ impl Setting {
             .then_with(|| rest(self).cmp(&rest(other)))
     }
 
-    /// The size as `320x240`: in letters that any program reads.
+    /// The size as `320x240`: in ASCII.
     pub fn size_text(&self) -> String {
         format!("{}x{}", self.size.width, self.size.height)
     }
 
-    /// How it is flown, where the rest is as in `base`.
+    /// The flight's configuration: this setting, and `base` for everything else.
     pub fn config(&self, base: &FlightConfig) -> FlightConfig {
         FlightConfig {
             sensor: self.sensor,
@@ -76,20 +76,20 @@ impl Setting {
 }
 
 impl Job {
-    /// What tells it from all other jobs: the setting and the seed.
+    /// The job's unique key: the setting and the seed.
     pub fn key(&self) -> String {
         format!("{}/{}", self.setting, self.seed)
     }
 
-    /// The order of jobs: that of their settings, then that of their seeds.
+    /// The order of jobs: by setting, then by seed.
     pub fn order(&self, other: &Self) -> Ordering {
         self.setting.order(&other.setting).then(self.seed.cmp(&other.seed))
     }
 
-    /// Flies it to the end. The first backend draws the pictures, the second one computes the flow.
+    /// Flies the job to its end. The first backend renders the images, the second one computes the flow.
     ///
     /// # Errors
-    /// As [`CourseKind::course`], [`Flight::new`] and [`Flight::step`].
+    /// As in [`CourseKind::course`], [`Flight::new`] and [`Flight::step`].
     pub fn fly(&self, backends: [Backend; 2], base: &FlightConfig) -> Result<Summary> {
         let course = self.setting.world.course(self.seed)?;
         Flight::new(backends, &course, &self.setting.config(base))?.fly(|_| Ok(()))

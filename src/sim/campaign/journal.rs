@@ -6,31 +6,31 @@ use super::results::{json, line};
 use super::{Configuration, JobResult, Results};
 use crate::error::{Error, Result};
 
-/// A file that results are added to, one at a time, by one process at a time. Whatever stops that process, all lines but
-/// the last one are whole.
+/// A file to which one process appends results one by one. If that process is stopped at any moment, all lines but
+/// the last one are complete.
 #[derive(Debug)]
 pub struct Journal {
     file: File,
     path: PathBuf,
 }
 
-/// A journal that was opened.
+/// An opened journal.
 #[derive(Debug)]
 pub struct Opened {
-    /// The journal.
+    /// The journal, ready to append.
     pub journal: Journal,
-    /// What was in it.
+    /// The results already in it.
     pub results: Results,
-    /// Whether a half-written line at its end was removed.
+    /// Whether an incomplete last line was removed.
     pub repaired: bool,
 }
 
 impl Journal {
-    /// Opens a journal of this configuration, or begins one; its folder is made if it is not there.
+    /// Opens a journal of this configuration, or creates one together with its folder.
     ///
     /// # Errors
-    /// [`Error::Io`], also where another process has it open; as [`Results::read`]; [`Error::Format`] if it is of another
-    /// version or configuration.
+    /// [`Error::Io`], also if another process has it open; as in [`Results::read`]; [`Error::Format`] if it is of
+    /// another version or configuration.
     pub fn open(path: impl AsRef<Path>, configuration: &Configuration) -> Result<Opened> {
         let path = path.as_ref();
         let wrong = |source| Error::io(path, source);
@@ -43,12 +43,12 @@ impl Journal {
             TryLockError::Error(source) => wrong(source),
         })?;
         let mut journal = Self { file, path: path.to_owned() };
-        // Read under the lock: nobody adds to it any more.
+        // Read under the lock, when no other process appends to it.
         let mut text = Vec::new();
         journal.file.read_to_end(&mut text).map_err(wrong)?;
         let empty = Results::new(configuration.clone());
         let begun = json(path, configuration)?.into_bytes().starts_with(&text);
-        // If not even the first line is whole there is nothing in it yet.
+        // A journal whose first line is incomplete is empty.
         let (results, whole) = if begun { (empty, 0) } else { Results::parse(path, &text)? };
         configuration.check(path, results.configuration())?;
         let repaired = whole < text.len();
@@ -61,7 +61,7 @@ impl Journal {
         Ok(Opened { journal, results, repaired })
     }
 
-    /// Adds a result, and gives it to the operating system before it returns.
+    /// Appends a result, and passes it to the operating system before returning.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -89,7 +89,7 @@ mod tests {
         flown("wall", seed, Outcome::Reached, seed as f64 / 3.0)
     }
 
-    /// A journal with results of three flights.
+    /// Creates a journal with the results of three flights.
     fn begun(path: &Path) -> String {
         let mut opened = Journal::open(path, &configuration()).unwrap();
         assert!(!opened.repaired && opened.results.sorted().is_empty());

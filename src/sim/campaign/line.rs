@@ -9,7 +9,8 @@ use super::{Ended, Job, JobResult, Setting};
 use crate::error::{Error, Result};
 use crate::sim::flight::Summary;
 
-/// A result as it is written: a setting's parts as text, and either a reason or an outcome and its figures.
+/// A result as written: the setting's parts as text, and either the reason of a failure or an outcome and its
+/// figures.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
@@ -51,18 +52,18 @@ struct FlownFigures {
     offset_std_mean_m: Option<[f64; 2]>,
 }
 
-/// JSON has no word for what is not a number but `null`.
+/// Reads a number; JSON represents NaN as `null`.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64, D::Error> {
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
-/// What is wrong with a line of a file, and where in it: to the reader it is the only one.
+/// The message of a parse error, with the column alone: the parser sees each line as line 1.
 pub(super) fn problem(error: &serde_json::Error) -> String {
     error.to_string().replace(" at line 1 column ", " at column ")
 }
 
 impl JobResult {
-    /// The result on one line, without its end.
+    /// The result as one line of JSON, without its end.
     pub(super) fn to_line(&self) -> serde_json::Result<String> {
         serde_json::to_string(&self.line())
     }
@@ -90,7 +91,7 @@ impl JobResult {
         }
     }
 
-    /// The fields that two results differ in, with the values of either; none if they are the same.
+    /// The fields in which two results differ, with the values of each; `None` if they are the same.
     pub(super) fn differences(&self, other: &Self) -> serde_json::Result<Option<[String; 2]>> {
         let members = |result: &Self| -> serde_json::Result<BTreeMap<String, Value>> {
             let flown = serde_json::to_value(result.line())?;
@@ -109,7 +110,7 @@ impl JobResult {
         Ok((!differ.is_empty()).then(|| both.each_ref().map(told)))
     }
 
-    /// Reads what [`JobResult::to_line`] writes; else says what is wrong.
+    /// Parses the output of [`JobResult::to_line`]; an error is the reason.
     pub(super) fn from_line(text: &str) -> std::result::Result<Self, String> {
         let line: Line = serde_json::from_str(text).map_err(|error| problem(&error))?;
         line.result().map_err(|error| error.to_string())
@@ -165,7 +166,7 @@ impl FlownFigures {
             roll_rate_rad_s: self.roll_rate_rad_s,
             invalid: self.invalid,
             offset_m: self.offset_std_mean_m,
-            // Only single flights are measured.
+            // The journal keeps no measurements of single flights.
             measured: None,
         })
     }

@@ -1,9 +1,9 @@
-//! Many flights, and what they say together.
+//! Campaigns: many flights, and their statistics.
 //!
-//! A [`Campaign`] is lists of worlds, sensors, policies and so on; every combination of them is a [`Setting`], and that
-//! with a seed is a [`Job`]. [`fly_all`] flies jobs on threads, and a [`Table`] has a row for each setting. `Results`, which
-//! needs the features `io` and `serde`, keeps what was flown in a file, so that a campaign can be interrupted, shared out and put
-//! together again.
+//! A [`Campaign`] lists worlds, sensors, policies and so on. Every combination of them is a [`Setting`], and a
+//! setting with a seed is a [`Job`]. [`fly_all`] flies jobs on threads, and a [`Table`] has a row per setting.
+//! `Results`, which needs the features `io` and `serde`, stores results in a file, so that a campaign can be
+//! interrupted and resumed, or split and merged.
 
 mod faults;
 #[cfg(feature = "serde")]

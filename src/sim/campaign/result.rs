@@ -6,16 +6,16 @@ use crate::sim::flight::Summary;
 pub enum Ended {
     /// It was flown.
     Flown(Summary),
-    /// It could not be flown to its end, for this reason.
+    /// It failed with this error.
     Failed(String),
 }
 
-/// What became of a job.
+/// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobResult {
-    /// Which one.
+    /// The job.
     pub job: Job,
-    /// What computed the flow; none where there were no pictures.
+    /// The adapter that computed the flow; `None` if no flow was computed.
     pub adapter: Option<String>,
     /// How it ended.
     pub ended: Ended,

@@ -12,19 +12,19 @@ use crate::error::{Error, Result};
 use crate::io::write_atomic;
 use crate::sim::flight::FlightConfig;
 
-/// What all results of a file have in common: its first line.
+/// The configuration that all results of a file share: its first line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Configuration {
     /// This crate's version.
     viewsphere: String,
-    /// Of what the jobs do not say.
+    /// The fingerprint of everything that the jobs do not state.
     fingerprint: String,
-    /// The same for people to read, as far as it can be chosen.
+    /// The chosen settings, as text for people.
     settings: String,
 }
 
-/// Results of jobs, each of another one.
+/// The results of distinct jobs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Results {
     configuration: Configuration,
@@ -41,7 +41,7 @@ impl Configuration {
         Ok(Self { viewsphere: env!("CARGO_PKG_VERSION").to_owned(), fingerprint, settings })
     }
 
-    /// Checks that results of another file belong to these.
+    /// Checks that the results of another file have this configuration.
     ///
     /// # Errors
     /// [`Error::Format`] with both versions and configurations.
@@ -56,22 +56,22 @@ impl Configuration {
 }
 
 impl Results {
-    /// None yet.
+    /// An empty set of results.
     pub fn new(configuration: Configuration) -> Self {
         Self { configuration, by_key: BTreeMap::new() }
     }
 
-    /// Reads a file of results. A last line that has no end was being written when something stopped it: it is left out.
+    /// Reads a file of results. An incomplete last line, left by an interrupted write, is dropped.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Format`] naming the line that is none of a result, or that contradicts one before it.
+    /// [`Error::Io`]; [`Error::Format`] naming the line that is not a result, or that contradicts an earlier one.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let text = fs::read(path).map_err(|source| Error::io(path, source))?;
         Ok(Self::parse(path, &text)?.0)
     }
 
-    /// Reads the content of a file. Also returns how many bytes of it are whole lines.
+    /// Parses the content of a file. Also returns the length of its complete lines in bytes.
     pub(super) fn parse(path: &Path, text: &[u8]) -> Result<(Self, usize)> {
         let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
         let wrong = |number: usize, why: String| {
@@ -94,10 +94,10 @@ impl Results {
         Ok((results, whole))
     }
 
-    /// Adds the result of a job, if there is none of it yet. What was flown takes the place of what failed.
+    /// Adds the result of a job. A flown result replaces a failed one; an equal one changes nothing.
     ///
     /// # Errors
-    /// [`Error::Format`] naming the file if the job was flown before, and ended otherwise.
+    /// [`Error::Format`] naming the file if the job was flown before with another result.
     pub fn add(&mut self, path: impl AsRef<Path>, result: JobResult) -> Result<()> {
         match self.by_key.entry(result.job.key()) {
             Entry::Vacant(entry) => {
@@ -112,7 +112,7 @@ impl Results {
                     let broken = |error| Error::io(path.as_ref(), io::Error::other(error));
                     if let Some([before, now]) = entry.get().differences(&result).map_err(broken)? {
                         let found = format!("that of {} with {now}", entry.key());
-                        let expected = format!("the one that is there already, with {before}");
+                        let expected = format!("the one already present, with {before}");
                         return Err(Error::format(path, "result", found, expected));
                     }
                 }
@@ -121,8 +121,8 @@ impl Results {
         Ok(())
     }
 
-    /// Checks that whatever was flown by pictures had its flow computed by this adapter, as another one's differs in its
-    /// roundings: so a row of the table is of one.
+    /// Checks that the flow of all flights by images was computed on this adapter, as others round differently: so a
+    /// row of the table is of one adapter.
     ///
     /// # Errors
     /// [`Error::Format`] naming the file and both adapters.
@@ -130,46 +130,46 @@ impl Results {
         let flown = self.by_key.values().filter(|result| matches!(result.ended, Ended::Flown(_)));
         match flown.filter_map(|result| result.adapter.as_deref()).find(|adapter| *adapter != name) {
             Some(other) => {
-                let expected = format!("{name}, which this call computes on; or another folder");
+                let expected = format!("{name}, the adapter of this run; or another folder");
                 Err(Error::format(path, "adapter of its flights", other, expected))
             }
             None => Ok(()),
         }
     }
 
-    /// Adds all results of a file.
+    /// Adds all results of another file.
     ///
     /// # Errors
-    /// As [`Results::add`]; [`Error::Format`] if they are of another version or configuration.
+    /// As in [`Results::add`]; [`Error::Format`] if they are of another version or configuration.
     pub fn merge(&mut self, path: impl AsRef<Path>, other: Self) -> Result<()> {
         let path = path.as_ref();
         self.configuration.check(path, &other.configuration)?;
         other.by_key.into_values().try_for_each(|result| self.add(path, result))
     }
 
-    /// What they have in common.
+    /// The shared configuration.
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
-    /// Whether a job was flown. One that failed is to be tried again.
+    /// Whether a job was flown. A failed one counts as not flown, so that it is retried.
     pub fn has_flown(&self, key: &str) -> bool {
         self.by_key.get(key).is_some_and(|result| matches!(result.ended, Ended::Flown(_)))
     }
 
-    /// All of them, in the order of [`Job::order`](super::Job::order).
+    /// All results, in the order of [`Job::order`](super::Job::order).
     pub fn sorted(&self) -> Vec<&JobResult> {
         let mut all: Vec<&JobResult> = self.by_key.values().collect();
         all.sort_by(|a, b| a.job.order(&b.job));
         all
     }
 
-    /// What they say together.
+    /// The table of the results.
     pub fn table(&self) -> Table {
         Table::of(&self.sorted())
     }
 
-    /// Writes them in their order, so that the same results are the same file.
+    /// Writes the results in order, so that the same results give the same file.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -183,12 +183,12 @@ impl Results {
     }
 }
 
-/// A result's line, for a file.
+/// A result as a line; an error names the file.
 pub(super) fn line(path: &Path, result: &JobResult) -> Result<String> {
     result.to_line().map_err(|error| Error::io(path, io::Error::other(error)))
 }
 
-/// Anything as a line, for a file.
+/// A value as a line of JSON; an error names the file.
 pub(super) fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(|error| Error::io(path, io::Error::other(error)))
 }

@@ -10,17 +10,17 @@ use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::sim::flight::{FlightConfig, Sensor};
 
-/// Opens what draws the pictures and what computes the flow.
+/// Opens the backends that render the images and compute the flow.
 pub type Open<'a> = dyn Fn() -> Result<[Backend; 2]> + Sync + 'a;
 
-/// Flies jobs, so many at a time, and hands over each result as soon as it is there: in the order in which they end. A job
-/// that fails is a result too.
+/// Flies jobs, up to `at_a_time` concurrently, and passes each result to `done` as soon as it is known, in the order of
+/// completion. A failed job is a result too.
 ///
-/// The cores are shared out: each flight has its own of them, since a step of a small picture on all of them would wait for
-/// the slowest more than it computes.
+/// The cores are divided among the flights: a step of a small image on all cores would wait for the slowest longer
+/// than it computes.
 ///
 /// # Errors
-/// What `done` returns, after which no further job is begun; [`Error::Io`] if threads cannot be started.
+/// The error of `done`, after which no further job starts; [`Error::Io`] if threads cannot be started.
 pub fn fly_all(
     jobs: &[Job],
     base: &FlightConfig,
@@ -43,19 +43,19 @@ pub fn fly_all(
         }
         drop(sender);
         let ended = results.into_iter().try_for_each(&mut done);
-        // After an error nobody takes results any more; those who fly end with the flight that they are at.
+        // After an error the results are discarded; running flights end first.
         next.store(jobs.len(), Ordering::Relaxed);
         ended
     })
 }
 
-/// Flies one job after the other.
+/// Flies jobs one after the other.
 struct Worker<'a> {
     jobs: &'a [Job],
     base: &'a FlightConfig,
     open: &'a Open<'a>,
     next: &'a AtomicUsize,
-    /// Devices are kept from flight to flight, as it takes a while to open one.
+    /// The backends, kept from flight to flight, as opening a device is slow.
     opened: Option<[Backend; 2]>,
 }
 
@@ -80,7 +80,7 @@ impl Worker<'_> {
             Ok(opened) => {
                 let adapter = pictures.then(|| opened[1].name());
                 let flown = job.fly(opened.clone(), self.base);
-                // What a device went through, the next flight shall not know of.
+                // The next flight must not inherit a faulty device.
                 let sound = flown.is_ok() && !job.setting.faults.destroy();
                 if pictures {
                     self.opened = Some(opened).filter(|_| sound);
@@ -107,7 +107,7 @@ mod tests {
     use crate::sim::vehicle::TurnParams;
     use crate::steer::{Danger, Policy};
 
-    /// A wall that is soon there, and soon passed.
+    /// A wall that is reached soon, and passed soon.
     fn campaign(sensor: Sensor) -> Campaign {
         Campaign {
             base: FlightConfig { body: Body::Turn(TurnParams::default()), ..FlightConfig::default() },

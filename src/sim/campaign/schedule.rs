@@ -10,35 +10,35 @@ use crate::sim::CourseKind;
 use crate::sim::flight::{FlightConfig, Sensor};
 use crate::steer::{Danger, Policy};
 
-/// More flights than anyone waits for.
+/// The most flights of a campaign.
 const MAX_JOBS: usize = 10_000_000;
 
-/// What is flown: every combination of what the lists hold, each with every seed.
+/// A campaign: every combination of the lists' elements, each with every seed.
 #[derive(Clone, Debug)]
 pub struct Campaign {
-    /// All that the lists do not say.
+    /// The configuration of everything that the lists do not state.
     pub base: FlightConfig,
     /// The worlds' generators.
     pub worlds: Vec<CourseKind>,
-    /// What is steered by.
+    /// What the vehicle steers by.
     pub sensors: Vec<Sensor>,
-    /// How commands are found.
+    /// The steering policies.
     pub policies: Vec<Policy>,
-    /// What counts as near.
+    /// The measures of danger.
     pub dangers: Vec<Danger>,
     /// Airspeeds, m/s.
     pub speeds_m_s: Vec<f64>,
-    /// Sizes of the pictures, in pixels.
+    /// Image sizes, in pixels.
     pub sizes: Vec<Size>,
-    /// Frames from an exposure until its command acts.
+    /// Frames from an exposure until its command takes effect.
     pub latencies_frames: Vec<u32>,
-    /// What goes wrong.
+    /// The faults of each flight.
     pub faults: Vec<Faults>,
-    /// From the first seed until before the last.
+    /// The seeds: the first inclusive, the last exclusive.
     pub seeds: Range<u64>,
 }
 
-/// A share of a campaign's jobs: one of so many, counted from 1. As text `2/4`.
+/// A part of a campaign's jobs: `number` of `of`, counted from 1. As text `2/4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -46,7 +46,7 @@ pub struct Shard {
 }
 
 impl Campaign {
-    /// The settings, each once, in the order of the lists.
+    /// The distinct settings, in the order of the lists.
     pub fn settings(&self) -> Vec<Setting> {
         let mut all: Vec<Setting> = Vec::new();
         for &world in &self.worlds {
@@ -78,18 +78,18 @@ impl Campaign {
         all
     }
 
-    /// All jobs: the seeds of each setting one after the other, so that every [`Shard`] has its part of each setting.
+    /// All jobs: the seeds of each setting one after the other, so that every [`Shard`] has a part of each setting.
     pub fn jobs(&self) -> Vec<Job> {
         let seeds =
             |setting: Setting| self.seeds.clone().map(move |seed| Job { setting: setting.clone(), seed });
         self.settings().into_iter().flat_map(seeds).collect()
     }
 
-    /// Checks that every setting can be flown, its first seed at least. The backend is that of the flow.
+    /// Checks that every setting can be flown, with its first seed at least. The backend is that of the flow.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is nothing to fly, or too much; as [`FlightConfig::validate`], [`CourseKind::course`]
-    /// and [`Faults::check`].
+    /// [`Error::Parameter`] if there are no flights or too many; as in [`FlightConfig::validate`],
+    /// [`CourseKind::course`] and [`Faults::check`].
     pub fn validate(&self, flow: &Backend) -> Result<()> {
         let settings = self.settings();
         let seeds = usize::try_from(self.seeds.end.saturating_sub(self.seeds.start)).unwrap_or(usize::MAX);
@@ -111,10 +111,10 @@ impl Campaign {
 }
 
 impl Shard {
-    /// Everything.
+    /// All jobs.
     pub const ALL: Self = Self { number: 1, of: 1 };
 
-    /// Leaves its part of the jobs: every job is in one shard.
+    /// The shard's part of the jobs: every job is in exactly one shard.
     pub fn part(self, jobs: Vec<Job>) -> Vec<Job> {
         jobs.into_iter().skip(self.number - 1).step_by(self.of).collect()
     }

@@ -1,8 +1,9 @@
-/// 97.5 % of a normal distribution lie below so many standard deviations.
+/// The 97.5 % quantile of the standard normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// The interval that holds the true share of successes with 95 % confidence (E. B. Wilson, Probable inference, the law of
-/// succession, and statistical inference, JASA 22, 1927), without correction for continuity. Of no trials it is 0 to 1.
+/// The 95 % confidence interval of a share of successes (E. B. Wilson, Probable inference, the law of succession, and
+/// statistical inference, JASA 22, 1927), `[low, high]` without correction for continuity. Without trials it is 0 to
+/// 1.
 pub fn wilson(successes: usize, trials: usize) -> [f64; 2] {
     if trials == 0 {
         return [0.0, 1.0];
@@ -12,11 +13,11 @@ pub fn wilson(successes: usize, trials: usize) -> [f64; 2] {
     let scale = 1.0 + Z * Z / n;
     let centre = (share + Z * Z / (2.0 * n)) / scale;
     let half = Z / scale * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
-    // At no and at all successes an end is exact, which rounding must not spoil.
+    // Without and with only successes one end is exact; rounding must not change it.
     [if successes == 0 { 0.0 } else { centre - half }, if successes >= trials { 1.0 } else { centre + half }]
 }
 
-/// The mean; none of nothing.
+/// The mean; `None` if there are no values.
 pub(super) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }

@@ -5,71 +5,71 @@ use super::{Ended, JobResult, Setting};
 use crate::quantile::{nearest, sorted};
 use crate::sim::flight::{Outcome, Summary};
 
-/// What a campaign says: a row for each setting, in the order of [`Setting::order`].
+/// A campaign's results: a row per setting, in the order of [`Setting::order`].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Table {
-    /// What computed the flow, where there were pictures.
+    /// The adapters that computed the flow.
     pub adapters: Vec<String>,
     /// The rows.
     pub rows: Vec<Row>,
 }
 
-/// The flights of a setting together. What cannot be said of them is none.
+/// The statistics of one setting's flights. What is undefined for them is `None`.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Row {
     /// The world's generator.
     pub world: String,
-    /// What was steered by.
+    /// What the vehicle steered by.
     pub sensor: String,
-    /// How commands were found.
+    /// The steering policy.
     pub policy: String,
-    /// What counted as near.
+    /// The measure of danger.
     pub danger: String,
     /// Airspeed, m/s.
     pub speed_m_s: f64,
-    /// Size of the pictures.
+    /// Image size.
     pub size: String,
-    /// Frames from an exposure until its command acted.
+    /// Frames from an exposure until its command took effect.
     pub latency_frames: u32,
-    /// What went wrong.
+    /// The faults that occurred.
     pub faults: String,
-    /// Flights that were flown.
+    /// Completed flights.
     pub flights: usize,
-    /// Jobs that failed with an error; they are in no other figure.
+    /// Jobs that failed with an error; no other figure counts them.
     pub failed: usize,
     /// Flights that reached the goal.
     pub reached: usize,
-    /// Flights that came too near to something.
+    /// Flights that ended in a collision.
     pub crashed: usize,
-    /// Flights that left the band of altitudes.
+    /// Flights that left the altitude band.
     pub left_band: usize,
-    /// Flights that took too long.
+    /// Flights that timed out.
     pub timed_out: usize,
-    /// The share that reached the goal, 0 to 1.
+    /// The share of flights that reached the goal, 0 to 1.
     pub success: Option<f64>,
-    /// Its 95 % interval, as [`wilson`] has it: the lower end.
+    /// The lower end of its 95 % confidence interval, by [`wilson`].
     pub success_low: f64,
     /// The upper end.
     pub success_high: f64,
-    /// The least clearance of a flight, metres: its mean over the flights.
+    /// The least clearance of a flight, metres: the mean over the flights.
     pub least_clearance_mean_m: Option<f64>,
-    /// The same, the value that 5 % of the flights lie below.
+    /// The least clearance of a flight, metres: the 5th percentile over the flights.
     pub least_clearance_p5_m: Option<f64>,
-    /// Progress a metre flown, 0 to 1: the mean over the flights that reached the goal.
+    /// Path efficiency, progress per distance flown, 0 to 1: the mean over the flights that reached the goal.
     pub efficiency: Option<f64>,
-    /// All way flown a crash, metres; none where there was no crash.
+    /// Distance flown per crash, metres; `None` without a crash.
     pub between_crashes_m: Option<f64>,
-    /// All way flown, metres.
+    /// Total distance flown, metres.
     pub path_m: f64,
     /// Root mean square of the roll rate over the time of all flights, rad/s.
     pub roll_rate_rad_s: Option<f64>,
-    /// The share of the time without a cue, 0 to 1.
+    /// The share of the time without a valid cue, 0 to 1.
     pub invalid: Option<f64>,
-    /// Offset to the right of the middle of the way, metres: its mean over the flights. None where the way has no middle.
+    /// Offset to the right of the centre line, metres: the mean over the flights. `None` for courses without one.
     pub offset_mean_m: Option<f64>,
-    /// The offset's standard deviation in a flight, metres: its mean over the flights.
+    /// The offset's standard deviation within a flight, metres: the mean over the flights.
     pub offset_std_m: Option<f64>,
 }
 
@@ -85,7 +85,7 @@ impl Table {
         Self { adapters, rows }
     }
 
-    /// The rows as comma-separated values under their names. What is none is empty.
+    /// The rows as comma-separated values below a header. `None` is an empty cell.
     pub fn csv(&self) -> String {
         let mut text = COLUMNS.join(",") + "\n";
         for row in &self.rows {
@@ -118,7 +118,7 @@ impl Table {
                 some(row.offset_mean_m),
                 some(row.offset_std_m),
             ];
-            // A string takes everything.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "{}", cells.join(","));
         }
         text
@@ -156,7 +156,7 @@ const COLUMNS: [&str; 26] = [
 ];
 
 impl Row {
-    /// The row of results of one setting, of which there is at least one.
+    /// The row of one setting's results, of which there is at least one.
     fn of(results: &[&JobResult]) -> Self {
         let flown: Vec<&Summary> = (results.iter())
             .filter_map(|result| match &result.ended {
@@ -170,7 +170,7 @@ impl Row {
         let [success_low, success_high] = wilson(reached, flown.len());
         let path_m: f64 = all(|summary| summary.path_m).iter().sum();
         let time_s: f64 = all(|summary| summary.time_s).iter().sum();
-        // A flight counts by its time, as its frames would.
+        // Weight flights by their duration, as their frames would.
         let over_time = |value: fn(&Summary) -> f64| {
             let sum: f64 = flown.iter().map(|summary| value(summary) * summary.time_s).sum();
             (time_s > 0.0).then(|| sum / time_s)
@@ -236,7 +236,7 @@ mod tests {
         assert_eq!([wall.success_low, wall.success_high], wilson(1, 2));
         assert_eq!(wall.least_clearance_mean_m, Some(1.25));
         assert_eq!(wall.least_clearance_p5_m, Some(0.5));
-        // Each flies 100 m towards the goal on a way of 125 m, in 10 s, and rolls by 0.3 rad/s.
+        // Each flight makes 100 m of progress on a path of 125 m, in 10 s, and rolls by 0.3 rad/s.
         assert_eq!(wall.efficiency, Some(0.8));
         assert_eq!((wall.path_m, wall.between_crashes_m), (250.0, Some(250.0)));
         assert!((wall.roll_rate_rad_s.unwrap() - 0.3).abs() < 1e-12);

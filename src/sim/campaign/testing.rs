@@ -1,4 +1,4 @@
-//! Made-up results.
+//! Synthetic results.
 
 use super::{Ended, Faults, Job, JobResult, Setting};
 use crate::frame::Size;

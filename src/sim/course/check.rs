@@ -4,12 +4,12 @@ use super::{Course, LARGEST_M, MAX_SURFACES};
 use crate::error::{Error, Result};
 use crate::sim::Form;
 
-/// Characters of a name.
+/// The most characters of a name.
 const MAX_NAME: usize = 200;
 
 impl Course {
-    /// Checks that the course can be flown: that its numbers are finite and in order, and that there is room at the
-    /// start, which lies within the band of altitudes.
+    /// Checks that the course can be flown: that its numbers are finite and in order, and that the start is free of
+    /// surfaces and within the altitude band.
     ///
     /// # Errors
     /// [`Error::Parameter`] naming the field.
@@ -30,7 +30,11 @@ impl Course {
         }
         if let Some(i) = self.world.surfaces.iter().position(|surface| !is_near(surface.form())) {
             let expected = format_args!("within ±{LARGEST_M} m");
-            return Err(Error::parameter("world", format_args!("far away with surface {i}"), expected));
+            return Err(Error::parameter(
+                "world",
+                format_args!("one whose surface {i} is too far away"),
+                expected,
+            ));
         }
         for (name, yaw_rad) in [("start_yaw_rad", self.start_yaw_rad), ("goal_yaw_rad", self.goal_yaw_rad)] {
             if !(yaw_rad.abs() <= LARGEST_M) {
@@ -54,7 +58,7 @@ impl Course {
         let clearance_m = self.world.clearance_m(self.start_ned_m);
         if !(clearance_m > 0.0 && self.start_ned_m.abs().max_element() <= LARGEST_M) {
             let found = format_args!("{}, {clearance_m} m from the nearest surface", self.start_ned_m);
-            return Err(Error::parameter("start_ned_m", found, "a place with room"));
+            return Err(Error::parameter("start_ned_m", found, "a position outside all surfaces"));
         }
         let start_m = -self.start_ned_m.z;
         if !(low..=high).contains(&start_m) {
@@ -66,7 +70,7 @@ impl Course {
     }
 }
 
-/// Whether nothing of it is larger than [`LARGEST_M`].
+/// Whether none of the form's numbers exceeds [`LARGEST_M`].
 fn is_near(form: Form) -> bool {
     let (vectors, length_m) = match form {
         Form::Plane { point_world, normal_world } => ([point_world, normal_world, DVec3::ZERO], 0.0),

@@ -8,22 +8,22 @@ use super::{Course, VISIBLE_M, northward};
 use crate::error::Result;
 use crate::sim::{Random, Surface};
 
-/// How far houses stand to both sides of the way.
+/// The distance to both sides of the path within which houses stand.
 const HALF_WIDTH_M: f64 = 120.0;
 
-/// Houses, turned anyhow, with streets in between. To climb over them is allowed.
+/// Houses of random orientation, with streets in between. Flying over them is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct City {
-    /// Both sides of a house's ground plan. 1 to 100 m, by default 10 to 24.
+    /// Range of both sides of a house's ground plan. 1 to 100 m, by default 10 to 24.
     pub edge_m: [f64; 2],
-    /// 1 to 200 m, by default 12 to 60.
+    /// Range of the houses' heights. 1 to 200 m, by default 12 to 60.
     pub height_m: [f64; 2],
-    /// The mean distance of neighbours' centres: there is one house to its square. The least is 0.7 of it. 10 to 500 m,
-    /// by default 48.
+    /// The mean distance of neighbouring centres: one house per square of it. The least distance is 0.7 of it. 10 to
+    /// 500 m, by default 48.
     pub spacing_m: f64,
-    /// To the north. 10 to 2000 m, by default 400.
+    /// Length to the north. 10 to 2000 m, by default 400.
     pub length_m: f64,
-    /// Around the start there is no house within this. 1 to 500 m, by default 40.
+    /// Radius around the start without houses. 1 to 500 m, by default 40.
     pub free_m: f64,
 }
 
@@ -45,7 +45,7 @@ impl City {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`City::validate`].
+    /// As in [`City::validate`].
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let random = Random::new(seed);

@@ -7,25 +7,25 @@ use super::{Course, VISIBLE_M, northward, wall_between};
 use crate::error::Result;
 use crate::sim::Random;
 
-/// Of the two waves that the way is the sum of, metres.
+/// The ranges of the wavelengths of the two waves whose sum is the centre line, metres.
 const WAVELENGTHS_M: [[f64; 2]; 2] = [[70.0, 100.0], [100.0, 150.0]];
-/// A step along the way from one link of the walls to the next, to the north.
+/// The length of a wall's link, to the north.
 const LINK_M: f64 = 4.0;
-/// The walls begin before the start.
+/// The distance before the start at which the walls begin.
 const BEHIND_M: f64 = 32.0;
-/// Links overlap by twice this, so that rounding leaves no gap.
+/// Half the overlap of links, so that rounding leaves no gap.
 const OVERLAP_M: f64 = 1e-6;
 
-/// A winding way between two high walls. The flight begins in its middle, along it.
+/// A winding corridor between two high walls. The flight starts on its centre line, in its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corridor {
-    /// From wall to wall. 2 to 50 m, by default 20; 14 and 30 are the others in use.
+    /// Distance between the walls. 2 to 50 m, by default 20; 14 and 30 are the others in use.
     pub width_m: f64,
-    /// The way's middle is bent nowhere more than this: one over the least radius. 0 to 1/35 1/m, by default 1/35.
+    /// The largest curvature of the centre line, the inverse of its least radius. 0 to 1/35 1/m, by default 1/35.
     pub curvature_per_m: f64,
-    /// To the north. 10 to 2000 m, by default 300.
+    /// Length to the north. 10 to 2000 m, by default 300.
     pub length_m: f64,
-    /// Of the walls. 1 to 500 m, by default 40: too high to be climbed over within the band of altitude.
+    /// Height of the walls. 1 to 500 m, by default 40: too high to fly over within the altitude band.
     pub height_m: f64,
 }
 
@@ -44,10 +44,10 @@ impl Corridor {
         field::check(&{ *self }.fields())
     }
 
-    /// The course of a seed: it knows [the middle of its way](Course::offset_m).
+    /// The course of a seed, with a [centre line](Course::offset_m).
     ///
     /// # Errors
-    /// As [`Corridor::validate`].
+    /// As in [`Corridor::validate`].
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let middle = Middle::new(&mut Random::new(seed), self.curvature_per_m);
@@ -78,7 +78,7 @@ impl Corridor {
     }
 }
 
-/// East of north: the sum of two waves, 0 at the start.
+/// The centre line as metres east of north: the sum of two waves, 0 at the start.
 struct Middle {
     waves: [Wave; 2],
 }
@@ -106,7 +106,7 @@ impl Middle {
         self.waves.iter().map(slope).sum()
     }
 
-    /// A place so far to the right of the middle.
+    /// The point at a distance to the right of the centre line.
     fn aside(&self, north_m: f64, right_m: f64) -> DVec2 {
         let east =
             |wave: &Wave| wave.amplitude_m * ((wave.per_m * north_m + wave.phase).sin() - wave.phase.sin());

@@ -5,21 +5,21 @@ use super::{Course, northward, wall_between};
 use crate::error::Result;
 use crate::sim::Random;
 
-/// Two walls along the way and a third that closes them: a trap. Who does not remember where there was room flies in and
-/// does not come out; it is there to see that, and failure is expected.
+/// Two parallel walls closed by a third: a trap. A policy without memory flies in and does not come out. The course
+/// exists to show that; failure is expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeadEnd {
     /// From the start to the mouth of the trap. 20 to 1000 m, by default 60 to 80.
     pub distance_m: [f64; 2],
-    /// Between the two walls. 2 to 500 m, by default 24 to 40: there is room to turn around.
+    /// Distance between the two walls. 2 to 500 m, by default 24 to 40: wide enough to turn around.
     pub width_m: [f64; 2],
     /// From the mouth to the end. 1 to 500 m, by default 40 to 60.
     pub depth_m: [f64; 2],
-    /// The middle of the trap to the right of the way. Within ±250 m, by default ±5.
+    /// Offset of the trap's centre to the right of the path. Within ±250 m, by default ±5.
     pub offset_m: [f64; 2],
-    /// 1 to 500 m, by default 40: too high to be climbed over within the band of altitude.
+    /// Height of the walls. 1 to 500 m, by default 40: too high to fly over within the altitude band.
     pub height_m: f64,
-    /// To be flown beyond the end. 1 to 1000 m, by default 20.
+    /// Distance from the end of the trap to the goal. 1 to 1000 m, by default 20.
     pub past_m: f64,
 }
 
@@ -48,7 +48,7 @@ impl DeadEnd {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`DeadEnd::validate`].
+    /// As in [`DeadEnd::validate`].
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let mut random = Random::new(seed);

@@ -1,10 +1,10 @@
-//! The parameters of a generator as a list, from which follow their check and how they are read and shown.
+//! A generator's parameters as a list, from which their validation, parsing and formatting follow.
 
 use std::fmt;
 
 use crate::error::{Error, Result};
 
-/// A parameter under its name in text. It has one value, or the two ends of the range that each value is drawn from.
+/// A named parameter. It has one value, or the two ends of the range that each value is drawn from.
 pub(super) struct Field<'a> {
     pub(super) name: &'static str,
     values: &'a mut [f64],
@@ -31,7 +31,7 @@ impl<'a> Field<'a> {
         if self.are_sound(self.values) { Ok(()) } else { Err(self.wrong(self)) }
     }
 
-    /// Reads a value, such as `0.02` or `1/64`, or a range, such as `-20..20`.
+    /// Parses a value, such as `0.02` or `1/64`, or a range, such as `-20..20`.
     pub(super) fn read(&mut self, text: &str) -> Result<()> {
         let ends = if self.values.len() == 1 { None } else { text.split_once("..") };
         let (from, to) = ends.unwrap_or((text, text));
@@ -79,14 +79,14 @@ impl fmt::Display for Field<'_> {
     }
 }
 
-/// A decimal, or a quotient of two.
+/// Parses a decimal, or a quotient of two.
 fn number(text: &str) -> Option<f64> {
     let (above, below) = text.split_once('/').unwrap_or((text, "1"));
     let number = |text: &str| text.trim().parse::<f64>().ok();
     Some(number(above)? / number(below)?)
 }
 
-/// Checks all parameters of a generator.
+/// Validates all parameters of a generator.
 pub(super) fn check(fields: &[Field<'_>]) -> Result<()> {
     fields.iter().try_for_each(Field::check)
 }

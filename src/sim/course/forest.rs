@@ -4,22 +4,22 @@ use super::{Course, VISIBLE_M, northward, trunk};
 use crate::error::Result;
 use crate::sim::Random;
 
-/// How far trees stand to both sides of the way, and behind the start.
+/// The distance to both sides of the path, and behind the start, within which trees stand.
 const HALF_WIDTH_M: f64 = 80.0;
 const BEHIND_M: f64 = 20.0;
 
-/// Upright trunks, none too near another. They are higher than the band of altitude.
+/// Upright trunks at a minimum distance from each other, higher than the altitude band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forest {
-    /// Trees to the square metre: 1/10000 to 1/25, by default 1/100. Two trunks' axes are at least 0.7/√density apart.
+    /// Trees per square metre: 1/10000 to 1/25, by default 1/100. Two trunks' axes are at least 0.7/√density apart.
     pub density_per_m2: f64,
-    /// Of a trunk. 0.05 to 5 m, by default 0.2 to 0.4.
+    /// Range of the trunks' radii. 0.05 to 5 m, by default 0.2 to 0.4.
     pub radius_m: [f64; 2],
-    /// Of a tree. 1 to 100 m, by default 20 to 25.
+    /// Range of the trees' heights. 1 to 100 m, by default 20 to 25.
     pub height_m: [f64; 2],
-    /// To the north; the trees go on beyond. 10 to 1000 m, by default 200.
+    /// Length to the north; the trees continue beyond. 10 to 1000 m, by default 200.
     pub length_m: f64,
-    /// Around the start there is no tree within this. 1 to 500 m, by default 20.
+    /// Radius around the start without trees. 1 to 500 m, by default 20.
     pub free_m: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for Forest {
 }
 
 impl Forest {
-    /// The same with thick trunks that are farther apart: radius 0.8 to 1.2 m, one to 200 m².
+    /// Thick trunks further apart: radius 0.8 to 1.2 m, one per 200 m².
     pub const PILLARS: Self = Self {
         density_per_m2: 1.0 / 200.0,
         radius_m: [0.8, 1.2],
@@ -56,7 +56,7 @@ impl Forest {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`Forest::validate`], and for more trees than a world holds.
+    /// As in [`Forest::validate`], and for more trees than a world can hold.
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let random = Random::new(seed);

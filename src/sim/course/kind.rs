@@ -7,9 +7,10 @@ use crate::error::{Error, Result};
 
 /// A generator of courses with its parameters.
 ///
-/// As text it is a name, and after colons the parameters that are not at their defaults: `forest`,
-/// `forest:density=1/64`, `wall:width=60:offset=-5..5`. A parameter that is drawn from a range is given by both ends or, if
-/// these are the same, by one number; a number is a decimal or a quotient of two. Commas are left to lists of these.
+/// As text it is a name, followed by the parameters that differ from their defaults, each after a colon: `forest`,
+/// `forest:density=1/64`, `wall:width=60:offset=-5..5`. A parameter drawn from a range is given by both ends or, if
+/// these are equal, by one number; a number is a decimal or a quotient of two. Commas separate the elements of lists
+/// of kinds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CourseKind {
     /// `wall`.
@@ -62,7 +63,7 @@ impl CourseKind {
     /// The course of a seed.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter out of its range, and for more obstacles than a world holds.
+    /// [`Error::Parameter`] for a parameter out of its range, and for more obstacles than a world can hold.
     pub fn course(&self, seed: u64) -> Result<Course> {
         let course = match self {
             Self::Wall(wall) => wall.course(seed),
@@ -244,7 +245,7 @@ mod tests {
             let count = fields.len();
             for (field, value, more) in changes {
                 let value = if value > 0.0 { more / 7.0 } else { value };
-                // What is out of a parameter's range changes nothing.
+                // A value out of its range changes nothing.
                 let field = &mut fields[field % count];
                 let _ = field.read(&format!("{value}..{}", value + more)).or_else(|_| field.read(&value.to_string()));
             }

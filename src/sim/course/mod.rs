@@ -1,7 +1,7 @@
-//! Worlds to fly through, made from a seed.
+//! Courses: simulated worlds to fly through, generated from a seed.
 //!
-//! All of them are in NED: x to the north, y to the east, z down, the ground at z = 0. The way leads north unless said
-//! otherwise. A seed gives the same world on every machine, to the last bits of its sines.
+//! All of them are in NED: x to the north, y to the east, z down, the ground at z = 0. The path leads north unless
+//! stated otherwise. A seed gives the same world on every machine, up to the last bits of sines.
 //!
 //! ```
 //! use viewsphere::sim::CourseKind;
@@ -43,49 +43,49 @@ pub use self::wires::Wires;
 use super::{Surface, World};
 use crate::error::Result;
 
-/// Where flights begin, metres above the ground.
+/// The altitude at which flights start, metres above the ground.
 const START_ALTITUDE_M: f64 = 10.0;
-/// As far as obstacles are seen in time to matter: what comes after the end of the way stands there as well, so that no
-/// end is seen before it is reached.
+/// The distance at which obstacles still matter: the world continues for this length beyond the goal, so that its end
+/// cannot be seen before the goal is reached.
 const VISIBLE_M: f64 = 60.0;
-/// The most surfaces of a world: more than anyone can render in the time of a flight.
+/// The most surfaces of a world: more than can be rendered in the time of a flight.
 const MAX_SURFACES: usize = 16_384;
 
-/// No coordinate or length is larger, so that squares and sums of them stay far from the end of the numbers.
+/// The largest coordinate or length, so that squares and sums stay far from overflow.
 const LARGEST_M: f64 = 1e6;
 
-/// A world to fly through, and what is asked of who flies there.
+/// A world to fly through, and the task of the flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// What it was made by: a generator with what differs from its defaults, as [`CourseKind`] reads it. Of a course that
-    /// someone made by hand, one line of at most 200 characters.
+    /// The generator, with the parameters that differ from their defaults, as [`CourseKind`] parses it. For a
+    /// hand-made course, one line of at most 200 characters.
     pub name: String,
-    /// What its generator was begun with.
+    /// The seed of its generator.
     pub seed: u64,
-    /// What stands there. Up is against z.
+    /// The surfaces. Up is against z.
     pub world: World,
-    /// Where the flight begins.
+    /// The position at which the flight starts.
     pub start_ned_m: DVec3,
-    /// Where the vehicle heads at first: clockwise from north, seen from above.
+    /// The vehicle's initial heading: clockwise from north, seen from above.
     pub start_yaw_rad: f64,
-    /// The direction in which progress is wanted, the whole way: clockwise from north, seen from above.
+    /// The direction of the goal along the whole path: clockwise from north, seen from above.
     pub goal_yaw_rad: f64,
-    /// The flight has succeeded when it has come so far in that direction.
+    /// The progress in that direction at which the goal is reached.
     pub length_m: f64,
-    /// Least and greatest height above the ground that the flight is to keep.
+    /// The altitude band: least and greatest height above the ground.
     pub altitude_m: [f64; 2],
-    /// Points (north, east) of the middle of the way, where the way has one; empty elsewhere.
+    /// Points (north, east) of the centre line, in metres; empty if the course has none.
     pub centre_line_m: Vec<DVec2>,
 }
 
 impl Course {
-    /// How far a place is from the start in the direction of the goal.
+    /// The distance of a position from the start in the direction of the goal.
     pub fn progress_m(&self, position_ned_m: DVec3) -> f64 {
         (position_ned_m - self.start_ned_m).truncate().dot(heading(self.goal_yaw_rad))
     }
 
-    /// How far a place is to the right of the middle of the way, negative to the left of it; `None` where the way has no
-    /// middle.
+    /// The distance of a position to the right of the centre line, negative to its left; `None` if the course has no
+    /// centre line.
     pub fn offset_m(&self, position_ned_m: DVec3) -> Option<f64> {
         let place = position_ned_m.truncate();
         let offsets = self.centre_line_m.windows(2).filter_map(|ends| {
@@ -103,7 +103,7 @@ fn heading(yaw_rad: f64) -> DVec2 {
     DVec2::new(yaw_rad.cos(), yaw_rad.sin())
 }
 
-/// A course to the north that begins at the origin, with the ground and these surfaces.
+/// A course to the north that starts at the origin, with the ground and these surfaces.
 fn northward(seed: u64, obstacles: Vec<Surface>, length_m: f64, altitude_m: [f64; 2]) -> Result<Course> {
     let ground = Surface::plane(DVec3::ZERO, DVec3::NEG_Z)?;
     let surfaces = std::iter::once(ground).chain(obstacles).collect();
@@ -120,7 +120,7 @@ fn northward(seed: u64, obstacles: Vec<Surface>, length_m: f64, altitude_m: [f64
     })
 }
 
-/// An upright wall from one place (north, east) to another, as thin as a [`Surface::rectangle`].
+/// An upright wall from one point (north, east) to another, as thin as a [`Surface::rectangle`].
 fn wall_between(from: DVec2, to: DVec2, height_m: f64) -> Result<Surface> {
     let half_height = DVec3::NEG_Z * height_m / 2.0;
     Surface::rectangle(
@@ -130,7 +130,7 @@ fn wall_between(from: DVec2, to: DVec2, height_m: f64) -> Result<Surface> {
     )
 }
 
-/// A tree or pillar at a place (north, east).
+/// A tree or pillar at a point (north, east).
 fn trunk(place: DVec2, radius_m: f64, height_m: f64) -> Result<Surface> {
     Surface::cylinder(place.extend(0.0), place.extend(-height_m), radius_m)
 }

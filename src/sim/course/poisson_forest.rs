@@ -4,25 +4,25 @@ use super::{Course, VISIBLE_M, northward, trunk};
 use crate::error::Result;
 use crate::sim::Random;
 
-/// How far trees stand to both sides of the way.
+/// The distance to both sides of the path within which trees stand.
 const HALF_WIDTH_M: f64 = 60.0;
 
-/// The forest of Loquercio et al., "Learning high-speed flight in the wild", Science Robotics 6(59), 2021: trunks of one
-/// thickness that stand where chance puts them, a homogeneous Poisson process, so that some ways are closed.
+/// The forest of Loquercio et al., "Learning high-speed flight in the wild", Science Robotics 6(59), 2021: trunks of
+/// equal diameter at independent random positions, a homogeneous Poisson process, so that some passages are closed.
 ///
-/// The flight begins before the forest, so that it is under way when the first trees come.
+/// The flight starts before the forest, and is steady when it reaches the first trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoissonForest {
-    /// Trees to the square metre: 1/10000 to 1/9, by default 1/49; 1/36 and 1/25 are the others in use.
+    /// Trees per square metre: 1/10000 to 1/9, by default 1/49; 1/36 and 1/25 are the others in use.
     pub density_per_m2: f64,
-    /// Of a trunk. 0.1 to 5 m, by default 0.6.
+    /// Diameter of the trunks. 0.1 to 5 m, by default 0.6.
     pub diameter_m: f64,
-    /// From the start to where the trees begin. 1 to 500 m, by default 25.
+    /// From the start to the first trees. 1 to 500 m, by default 25.
     pub run_up_m: f64,
-    /// Of the way among the trees, to the north; they go on beyond. 1 to 1000 m, by default 40. The length of the course is
-    /// the run-up and this.
+    /// Length of the path among the trees, to the north; they continue beyond. 1 to 1000 m, by default 40. The
+    /// course's length is the sum of the run-up and this.
     pub forest_m: f64,
-    /// Of a tree. 1 to 100 m, by default 25: more than the band of altitude.
+    /// Height of the trees. 1 to 100 m, by default 25: higher than the altitude band.
     pub height_m: f64,
 }
 
@@ -44,12 +44,12 @@ impl PoissonForest {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`PoissonForest::validate`], and for more trees than a world holds.
+    /// As in [`PoissonForest::validate`], and for more trees than a world can hold.
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let length_m = self.run_up_m + self.forest_m;
         let radius_m = self.diameter_m / 2.0;
-        // The bark, not the axis, is where the trees begin.
+        // The trees begin at the bark, not at the axis.
         let north_m = [self.run_up_m + radius_m, length_m + VISIBLE_M];
         let area = Area { north_m, east_m: [-HALF_WIDTH_M, HALF_WIDTH_M] };
         let places = poisson(&mut Random::new(seed), area, self.density_per_m2)?;

@@ -1,4 +1,4 @@
-//! Where things stand that stand anywhere.
+//! Random positions of obstacles.
 
 use glam::DVec2;
 
@@ -6,14 +6,14 @@ use super::MAX_SURFACES;
 use crate::error::{Error, Result};
 use crate::sim::Random;
 
-/// The least distance of two places over the mean one, 1/√density. Half of all places fit at 0.83 and none more; at 0.7
-/// one in thirty throws finds room to the end.
+/// The least distance of two positions relative to the mean one, 1/√density. Half of all positions fit at 0.83 and
+/// none more; at 0.7 one in thirty throws finds room to the end.
 pub(super) const GAP: f64 = 0.7;
 
-/// Throws for each place. At [`GAP`] they never run out.
+/// The most throws per position. At [`GAP`] they are never used up.
 const THROWS: usize = 1000;
 
-/// A part of the ground: from the first to the second to the north, and to the east.
+/// A rectangle of the ground: its range to the north, and to the east.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Area {
     pub(super) north_m: [f64; 2],
@@ -26,12 +26,12 @@ impl Area {
     }
 }
 
-/// Places of a density, each in turn where there is room: a Poisson-disc distribution by throwing darts. None is nearer
-/// to another than [`GAP`]/√density, and there are density × area of them, rounded.
+/// Positions with a minimum distance: a Poisson-disc distribution by dart throwing. No two are nearer than
+/// [`GAP`]/√density, and there are density × area of them, rounded.
 pub(super) fn poisson_disc(random: &mut Random, area: Area, density_per_m2: f64) -> Result<Vec<DVec2>> {
     let wanted = count(density_per_m2 * area.square_metres())?;
     let gap_m = GAP / density_per_m2.sqrt();
-    // Of a cell this small no two places can be.
+    // A cell this small holds at most one position.
     let cell_m = gap_m * 0.7;
     let [rows, columns] =
         [area.north_m, area.east_m].map(|[low, high]| ((high - low) / cell_m).floor() as usize + 1);
@@ -55,7 +55,7 @@ pub(super) fn poisson_disc(random: &mut Random, area: Area, density_per_m2: f64)
     Ok(places)
 }
 
-/// Places of a density that know nothing of each other: a homogeneous Poisson process, from south to north.
+/// Independent positions: a homogeneous Poisson process, from south to north.
 pub(super) fn poisson(random: &mut Random, area: Area, density_per_m2: f64) -> Result<Vec<DVec2>> {
     count(density_per_m2 * area.square_metres())?;
     let per_metre = density_per_m2 * (area.east_m[1] - area.east_m[0]);
@@ -70,7 +70,7 @@ pub(super) fn poisson(random: &mut Random, area: Area, density_per_m2: f64) -> R
     }
 }
 
-/// The number of things that are to be expected. Half of what a world holds leaves room for chance.
+/// The expected number of obstacles, at most half of what a world can hold, to leave room for chance.
 fn count(expected: f64) -> Result<usize> {
     let most = MAX_SURFACES / 2;
     if !(expected <= most as f64) {

@@ -4,20 +4,21 @@ use crate::error::Result;
 use crate::sim::Random;
 use glam::DVec2;
 
-/// A wall across the way, on open ground. It has to be flown around; the flight has succeeded when it is well past.
+/// A wall across the path, on open ground, to be flown around; the goal is well past it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
-    /// From the start to the middle of the wall, to the north. 20 to 1000 m, by default 80 to 100.
+    /// From the start to the centre of the wall, to the north. 20 to 1000 m, by default 80 to 100.
     pub distance_m: [f64; 2],
-    /// From one end of the wall to the other. 1 to 500 m, by default 40 to 70.
+    /// Width of the wall. 1 to 500 m, by default 40 to 70.
     pub width_m: [f64; 2],
-    /// Of the wall's normal to the way: positive if its right end is farther away. Within ±80°, by default ±45.
+    /// Angle between the wall's normal and the path: positive if its right end is further away. Within ±80°, by
+    /// default ±45.
     pub incidence_deg: [f64; 2],
-    /// The middle of the wall to the right of the way. Within ±250 m, by default ±20.
+    /// Offset of the wall's centre to the right of the path. Within ±250 m, by default ±20.
     pub offset_m: [f64; 2],
-    /// 1 to 500 m, by default 40: too high to be climbed over within the band of altitude.
+    /// Height of the wall. 1 to 500 m, by default 40: too high to fly over within the altitude band.
     pub height_m: f64,
-    /// To be flown beyond the farthest point of the wall. 1 to 1000 m, by default 20.
+    /// Distance from the furthest point of the wall to the goal. 1 to 1000 m, by default 20.
     pub past_m: f64,
 }
 
@@ -46,7 +47,7 @@ impl Wall {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`Wall::validate`].
+    /// As in [`Wall::validate`].
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let mut random = Random::new(seed);

@@ -5,25 +5,25 @@ use super::{Course, northward, trunk};
 use crate::error::Result;
 use crate::sim::{Random, Surface};
 
-/// How far the wires go to both sides of the way.
+/// The reach of the wires to both sides of the path.
 const HALF_WIDTH_M: f64 = 75.0;
-/// The poles to the right of the way: none is in it.
+/// Offsets of the poles to the right of the path: none stands on it.
 const POLES_M: [f64; 4] = [-75.0, -25.0, 25.0, 75.0];
 const POLE_RADIUS_M: f64 = 0.15;
 
-/// Lines of wires across the way, on poles, at about the height of the flight. There is room above and below them, but a
-/// wire is thinner than a pixel until it is near: it is there to see that, and failure is expected.
+/// Lines of wires on poles across the path, near the altitude of the flight. There is room above and below them, but
+/// a wire is thinner than a pixel until it is near. The course exists to show that; failure is expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wires {
-    /// From the start to the first line, and from each to the next. 20 to 1000 m, by default 50 to 70.
+    /// From the start to the first line, and from each line to the next. 20 to 1000 m, by default 50 to 70.
     pub distance_m: [f64; 2],
-    /// Of each wire above the ground. 1 to 100 m, by default 8 to 12.
+    /// Height of each wire above the ground. 1 to 100 m, by default 8 to 12.
     pub height_m: [f64; 2],
-    /// Of a wire. 0.001 to 0.1 m, by default 0.005 to 0.015.
+    /// Radius of a wire. 0.001 to 0.1 m, by default 0.005 to 0.015.
     pub radius_m: [f64; 2],
-    /// Of each line. 1 to 20, by default 3; what is behind the point is dropped.
+    /// Wires per line. 1 to 20, by default 3; a fraction is truncated.
     pub wires: f64,
-    /// To the north. 10 to 2000 m, by default 200.
+    /// Length to the north. 10 to 2000 m, by default 200.
     pub length_m: f64,
 }
 
@@ -51,7 +51,7 @@ impl Wires {
     /// The course of a seed.
     ///
     /// # Errors
-    /// As [`Wires::validate`].
+    /// As in [`Wires::validate`].
     pub fn course(&self, seed: u64) -> Result<Course> {
         self.validate()?;
         let mut random = Random::new(seed);

@@ -7,31 +7,31 @@ use crate::sim::vehicle::GyroErrors;
 /// Steps of the vehicle, and samples of its gyro, per second.
 pub const STEPS_PER_S: u32 = 240;
 
-/// Paints a plane as a picture; the second argument is the value in full colour. `report::diverging` is one.
+/// Paints a plane as an image; the second argument is the value shown in full colour. One is `report::diverging`.
 pub type Paint = fn(&Plane, f64) -> Result<Image>;
 
 /// Configuration of a data set.
 #[derive(Clone, Debug)]
 pub struct DataSetConfig {
-    /// Seed of the noise of the pictures and of the gyro. A course has its own.
+    /// Seed of the noise of the images and of the gyro. A course has its own.
     pub seed: u64,
-    /// Number of frames, at least 2. There are fewer if the flight ends before.
+    /// Number of frames, at least 2. There are fewer if the flight ends earlier.
     pub frames: usize,
     /// Frames per second: a divisor of [`STEPS_PER_S`].
     pub rate_hz: u32,
-    /// Airspeed, m/s, in the range that the airframe flies level at: 7.7 to 25.
+    /// Airspeed, m/s, at which the airframe can hold its altitude: 7.7 to 25.
     pub speed_m_s: f64,
-    /// Standard deviation of the noise of the pictures in gray levels, 0 to 64.
+    /// Standard deviation of the image noise in gray levels, 0 to 64.
     pub noise_levels: f64,
     /// Errors of the gyro in `gyro.csv`.
     pub gyro_errors: GyroErrors,
-    /// The truths to write, one file per frame each.
+    /// The kinds of ground truth to write, each as one file per frame.
     pub truths: Vec<Truth>,
-    /// Azimuths and elevations of [`Truth::Grid`].
+    /// Number of azimuths and elevations of [`Truth::Grid`].
     pub grid: Size,
-    /// Paints a picture beside each file of the truths that have a [`Truth::full_colour`], if given.
+    /// Paints an image beside each file of the truths that have a [`Truth::full_colour`], if given.
     pub paint: Option<Paint>,
-    /// The command that makes the same data set, for its README.md.
+    /// The command that creates the same data set, for its README.md.
     pub made_by: Option<String>,
 }
 
@@ -54,7 +54,7 @@ impl Default for DataSetConfig {
 }
 
 impl DataSetConfig {
-    /// Checks every field but the speed, whose range is the airframe's.
+    /// Checks every field but the speed, whose range depends on the airframe.
     ///
     /// # Errors
     /// [`Error::Parameter`] for the first that is out of range.
@@ -77,7 +77,7 @@ impl DataSetConfig {
         self.grid.validate().map(|_| ())
     }
 
-    /// What the pictures of truths show in full colour, in words; none without such pictures.
+    /// The values that images of ground truth show in full colour, as text; `None` without such images.
     pub fn scales(&self) -> Option<String> {
         let scale = |truth: &Truth| {
             let unit = if *truth == Truth::Divergence { "/s" } else { "/m" };
@@ -88,7 +88,7 @@ impl DataSetConfig {
         (!scales.is_empty()).then(|| scales.join(", "))
     }
 
-    /// Bytes of a frame before any compression: its picture and its truths.
+    /// The uncompressed size of a frame in bytes: its image and its ground truth.
     pub fn bytes_per_frame(&self, picture: Size) -> f64 {
         let truths = self.truths.iter().map(|truth| truth.bytes(picture, self.grid));
         picture.pixels() as f64 + truths.sum::<f64>()

@@ -10,18 +10,18 @@ use crate::sim::Course;
 use crate::sim::flight::{Flight, FlightConfig, Outcome, Sensor};
 use crate::sim::vehicle::{GyroErrors, GyroModel, VehicleState};
 
-/// A flight that is over.
+/// A completed flight.
 pub(super) struct Flown {
     /// The vehicle at each frame.
     pub(super) frames: Vec<VehicleState>,
     /// The vehicle at each step, from the first frame to the last.
     steps: Vec<VehicleState>,
-    /// How it ended, if it did before the time was over.
+    /// How it ended, if it did so before its time was over.
     pub(super) ended: Option<Outcome>,
 }
 
 impl Flown {
-    /// Flies a course by true depth, until there are as many frames, so many steps apart, as there may be.
+    /// Flies a course by true depth, until there are `most` frames, `apart` steps apart, or the flight ends.
     pub(super) fn new(course: &Course, speed_m_s: f64, apart: usize, most: usize) -> Result<Self> {
         let config = FlightConfig { speed_m_s, sensor: Sensor::Depth, ..FlightConfig::default() };
         let mut flight = Flight::new([Backend::Cpu, Backend::Cpu], course, &config)?;
@@ -29,7 +29,7 @@ impl Flown {
         let (mut steps, mut ended) = (Vec::new(), None);
         while steps.len() < needed && ended.is_none() {
             ended = flight.step(|_| Ok(()))?.map(|summary| summary.outcome);
-            // The first of a frame is the last of the one before.
+            // The first state of a frame is the last one of the previous frame.
             steps.extend(flight.states().iter().skip(usize::from(!steps.is_empty())));
         }
         if steps.len() >= needed {
@@ -41,20 +41,20 @@ impl Flown {
         Ok(Self { frames, steps, ended })
     }
 
-    /// What a gyro says from the first frame to the last, at every step.
+    /// The gyro's samples from the first frame to the last, one per step.
     pub(super) fn gyro(&self, errors: &GyroErrors, seed: u64) -> Result<Vec<GyroSample>> {
         let mut gyro = GyroModel::new(errors, seed)?;
         Ok(self.steps.iter().map(|state| gyro.sample(state)).collect())
     }
 
-    /// The way from the first frame to the last, metres.
+    /// The length of the path from the first frame to the last, metres.
     pub(super) fn path_m(&self) -> f64 {
         let way = |pair: &[VehicleState]| pair[0].position_ned_m.distance(pair[1].position_ned_m);
-        // The sum of none is −0.
+        // The sum of no values is −0.
         self.steps.windows(2).map(way).sum::<f64>() + 0.0
     }
 
-    /// The least distance to anything on the way, metres.
+    /// The least clearance along the path, metres.
     pub(super) fn least_clearance_m(&self, course: &Course) -> f64 {
         let clearances = self.steps.iter().map(|state| course.world.clearance_m(state.position_ned_m));
         clearances.fold(f64::INFINITY, f64::min)
@@ -75,17 +75,17 @@ impl Flown {
     }
 }
 
-/// How a flight ended, in words.
+/// How a flight ended, as text.
 pub(super) fn ended(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Reached => "the goal was reached",
         Outcome::Crashed => "it would have crashed",
-        Outcome::LeftBand => "it left its altitudes",
-        Outcome::TimedOut => "it had taken too long",
+        Outcome::LeftBand => "it left its altitude band",
+        Outcome::TimedOut => "it timed out",
     }
 }
 
-/// How the camera moves, in its own frame.
+/// The camera's motion, in its own frame.
 pub(super) fn motion(state: &VehicleState) -> crate::sim::Twist {
     crate::sim::Twist {
         velocity_m_s: state.camera_pose().world_from_camera.transpose() * state.velocity_ned_m_s,

@@ -1,4 +1,4 @@
-//! A folder that is whole or not there.
+//! A folder that appears only when complete.
 
 use std::fs;
 use std::io;
@@ -8,28 +8,27 @@ use super::Existing;
 use crate::error::{Error, Result};
 use crate::io::check_creatable;
 
-/// What every data set holds, by which one is known.
+/// A file in every data set, by which one is recognised.
 const MARK: &str = "poses.csv";
 
-/// A folder that is written beside its place and renamed into it at the end. Without that nothing is left of it.
+/// A folder that is written beside its final place and renamed at the end. If dropped earlier, it is removed.
 pub(super) struct Folder {
     place: PathBuf,
     partial: PathBuf,
-    /// Where an earlier set waits until the new one is in its place.
+    /// The path of an earlier set until the new one is in place.
     replaced: PathBuf,
     finished: bool,
 }
 
 impl Folder {
-    /// Makes the folder beside its place.
+    /// Creates the folder beside its final place.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is something at its place already, unless that is a data set that may be replaced;
-    /// [`Error::Io`].
+    /// [`Error::Parameter`] if the place is taken, unless by a data set that may be replaced; [`Error::Io`].
     pub(super) fn new(place: &Path, existing: Existing) -> Result<Self> {
-        let name = place.file_name().ok_or_else(|| {
-            Error::parameter("folder", place.display(), "the name of a folder that is not there yet")
-        })?;
+        let name = place
+            .file_name()
+            .ok_or_else(|| Error::parameter("folder", place.display(), "the name of a new folder"))?;
         if place.exists() {
             let empty = fs::read_dir(place).map_err(|source| Error::io(place, source))?.next().is_none();
             if !empty && existing == Existing::Refuse {
@@ -45,7 +44,7 @@ impl Folder {
                 return Err(Error::parameter(
                     "folder",
                     found,
-                    "a data set where Existing::Replace is to replace it",
+                    "a data set, as Existing::Replace replaces nothing else",
                 ));
             }
         }
@@ -65,23 +64,23 @@ impl Folder {
         Ok(Self { place: place.to_owned(), partial, replaced, finished: false })
     }
 
-    /// Where a file of this name is, or will be.
+    /// The current path of a file in the folder.
     pub(super) fn path(&self, name: &str) -> PathBuf {
         if self.finished { self.place.join(name) } else { self.partial.join(name) }
     }
 
-    /// Makes a folder in it.
+    /// Creates a subfolder.
     pub(super) fn make(&self, name: &str) -> Result<()> {
         let path = self.path(name);
         fs::create_dir_all(&path).map_err(|source| Error::io(path, source))
     }
 
-    /// Puts it into its place.
+    /// Moves the folder to its final place.
     pub(super) fn finish(&mut self) -> Result<()> {
         let Self { place, partial, replaced, .. } = self;
         let moved = |from: &Path, to: &Path| fs::rename(from, to).map_err(|source| Error::io(to, source));
         if place.exists() {
-            // The old one goes only when the new one is there.
+            // Remove the old one only once the new one is in place.
             moved(place, replaced)?;
             moved(partial, place)?;
             fs::remove_dir_all(&*replaced).map_err(|source| Error::io(&*replaced, source))?;
@@ -92,7 +91,7 @@ impl Folder {
         Ok(())
     }
 
-    /// How long all its files are together.
+    /// The total size of its files.
     pub(super) fn bytes(&self) -> Result<u64> {
         fn bytes(folder: &Path) -> io::Result<u64> {
             let mut sum = 0;
@@ -111,7 +110,7 @@ impl Folder {
 impl Drop for Folder {
     fn drop(&mut self) {
         if !self.finished {
-            // What cannot be removed is, by the next run.
+            // The next run removes what cannot be removed now.
             let _ = fs::remove_dir_all(&self.partial);
         }
     }

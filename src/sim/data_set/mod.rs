@@ -1,8 +1,8 @@
-//! Data sets: a flight through a simulated world as files, with pictures, a gyro's log, poses and the truth of each frame.
-//! This module needs the feature `io` beside `sim`.
+//! Data sets: a flight through a simulated world as files, with images, a gyro log, poses and the ground truth of
+//! each frame. This module needs the feature `io` beside `sim`.
 //!
-//! The flight is steered by true depth, so that it is one that an aircraft could fly. The same configuration on the same
-//! adapter gives the same files. A README.md in the folder says what each file holds, in which units and frames.
+//! The flight is steered by true depth, so an aircraft could fly it. The same configuration on the same adapter gives
+//! the same files. A README.md in the folder documents each file, its units and frames.
 //!
 //! ```no_run
 //! use viewsphere::Backend;
@@ -44,41 +44,41 @@ use crate::camera::Camera;
 use crate::error::Result;
 use crate::io::{camera, gyro_log, picture};
 
-/// What becomes of what is at the data set's place already. An empty folder is nothing.
+/// What happens to a folder already at the data set's place. An empty folder counts as none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// It is an error.
+    /// An existing folder is an error.
     Refuse,
     /// A data set is replaced once the new one is complete; anything else is an error.
     Replace,
 }
 
-/// What a data set holds.
+/// The summary of a data set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSetSummary {
     /// Number of frames.
     pub frames: usize,
-    /// Seconds from the first frame to the last.
+    /// The time from the first frame to the last, seconds.
     pub duration_s: f64,
-    /// How the flight ended, if it did before it had as many frames as were asked for.
+    /// How the flight ended, if it did so before the requested number of frames.
     pub ended: Option<Outcome>,
     /// Length of the path from the first frame to the last, metres.
     pub path_m: f64,
-    /// The least distance to any surface on the way, metres.
+    /// The least clearance along the path, metres.
     pub least_clearance_m: f64,
-    /// Bytes of all files.
+    /// The total size of all files.
     pub bytes: u64,
 }
 
 impl DataSetSummary {
-    /// How the flight ended, in words, if it did before it had as many frames as were asked for.
+    /// How the flight ended, as text, if it did so before the requested number of frames.
     pub fn ending(&self) -> Option<&'static str> {
         self.ended.map(flown::ended)
     }
 }
 
-/// Writes a data set into a folder beside its place, which is renamed at the end. A writer that is dropped before leaves
-/// nothing.
+/// Writes a data set into a folder beside its final place, which is renamed at the end. A writer dropped earlier
+/// leaves nothing.
 pub struct DataSetWriter<'a> {
     course: &'a Course,
     camera: &'a Camera,
@@ -89,12 +89,12 @@ pub struct DataSetWriter<'a> {
 }
 
 impl<'a> DataSetWriter<'a> {
-    /// Makes the folder and flies the course.
+    /// Creates the folder and flies the course.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for what [`DataSetConfig::validate`] finds, for a speed that the
-    /// airframe cannot fly at, and for a `folder` that has something in it ([`Existing`]);
-    /// [`Error::Io`](crate::Error::Io) if it cannot be made.
+    /// [`Error::Parameter`](crate::Error::Parameter) as in [`DataSetConfig::validate`], for a speed that the airframe
+    /// cannot fly at, and for a `folder` that is not empty ([`Existing`]); [`Error::Io`](crate::Error::Io) if it
+    /// cannot be created.
     pub fn new(
         folder: impl AsRef<Path>,
         existing: Existing,
@@ -115,11 +115,11 @@ impl<'a> DataSetWriter<'a> {
         self.flown.frames.len()
     }
 
-    /// Renders and writes everything. The pictures are rendered on `backend`; `progress` is told the number of frames
-    /// written after each one.
+    /// Renders and writes everything. The images are rendered on `backend`; `progress` is called after each frame
+    /// with the number of frames written.
     ///
     /// # Errors
-    /// What [`Renderer::new`] and [`Renderer::render`] fail with; [`Error::Io`](crate::Error::Io).
+    /// The errors of [`Renderer::new`] and [`Renderer::render`]; [`Error::Io`](crate::Error::Io).
     pub fn write(self, backend: Backend, mut progress: impl FnMut(usize)) -> Result<DataSetSummary> {
         let Self { course, camera, config, truths, mut folder, flown } = self;
         let sight_config = RendererConfig { noise_levels: config.noise_levels, ..RendererConfig::default() };

@@ -1,4 +1,4 @@
-//! What a data set says of itself.
+//! The README.md of a data set.
 
 use glam::DVec3;
 
@@ -25,15 +25,15 @@ pub(super) fn write(
         "# A flight through {name}, seed {seed}\n\n\
          Made by viewsphere {version}{command}\n\n\
          {frames} of {size} at {fps} Hz, flown at {speed} m/s by true depth until {ended}. World, flight and gyro are \
-         those of the seed; pictures and truth are rendered from the same surfaces.\n\n\
-         | file | what it holds |\n|---|---|\n\
-         | frames/NNNNNN.png | pictures, gray, 8 bits, through the lens, with noise of {levels} gray levels |\n\
+         those of the seed; images and ground truth are rendered from the same surfaces.\n\n\
+         | file | content |\n|---|---|\n\
+         | frames/NNNNNN.png | images, gray, 8 bits, through the lens, with noise of {levels} gray levels |\n\
          | times.csv | each frame's time, s |\n\
-         | camera.yaml | the camera in OpenCV's format: k1 k2 p1 p2 k3 k4 k5 k6, pixel centres at whole numbers |\n\
-         | poses.csv | each frame's place (north, east, down, m), attitude and velocity over ground (m/s) |\n\
+         | camera.yaml | the camera in OpenCV's format: k1 k2 p1 p2 k3 k4 k5 k6, pixel centres at integer coordinates |\n\
+         | poses.csv | each frame's position (north, east, down, m), attitude and velocity over ground (m/s) |\n\
          | gyro.csv | angular rate at 240 Hz about the body's axes, rad/s, with noise of {noise} rad/s/√Hz, a bias of {bias} °/s \
          at the start and its walk |\n\
-         | gyro_true.csv | the same without errors |\n",
+         | gyro_true.csv | gyro.csv without errors |\n",
         name = course.name,
         seed = course.seed,
         version = env!("CARGO_PKG_VERSION"),
@@ -57,17 +57,17 @@ pub(super) fn write(
                              infinite for the sky, NaN where the lens shows nothing |\n"
                 .to_owned(),
             Truth::Nearness => {
-                "| nearness/NNNNNN.npy | one over the depth, 1/m, float32, height × width |\n".to_owned()
+                "| nearness/NNNNNN.npy | inverse of the depth, 1/m, float32, height × width |\n".to_owned()
             }
             Truth::Divergence => "| divergence/NNNNNN.npy | divergence of the flow on the view sphere, 1/s, float32, \
                                   height × width |\n"
                 .to_owned(),
-            Truth::Spherical => "| spherical/NNNNNN.npy | how each pixel's bearing moves, a vector tangent to the unit sphere \
-                                 in the camera's frame, rad/s, float32, height × width × 3; the camera's turn is in it |\n"
+            Truth::Spherical => "| spherical/NNNNNN.npy | flow of each pixel's bearing, a vector tangent to the unit sphere \
+                                 in the camera's frame, rad/s, float32, height × width × 3; the camera's rotation included |\n"
                 .to_owned(),
             Truth::Grid => format!(
                 "| grid/NNNNNN.npy | metres along rays at {} azimuths (columns, from {:.3}° on the left to {:.3}°) and {} \
-                 elevations (rows, from {:.3}° at the top to {:.3}°), in the middles of equal parts of these ranges, float32; \
+                 elevations (rows, from {:.3}° at the top to {:.3}°), at the centres of equal parts of these ranges, float32; \
                  infinite for the sky |\n",
                 grid.columns,
                 grid.azimuth_rad[0].to_degrees(),
@@ -80,15 +80,15 @@ pub(super) fn write(
     }
     if let Some(scales) = config.scales() {
         text += &format!(
-            "| divergence/, nearness/NNNNNN.png | the same in colours: 0 white, above it red, below it blue, unknown gray, full \
+            "| divergence/, nearness/NNNNNN.png | the same as an image: 0 white, above it red, below it blue, unknown gray, full \
              colour at {scales} |\n"
         );
     }
     text += "\n## Frames\n\n\
              - World: x north, y east, z down; the ground is at z = 0.\n\
-             - Body: x forward, y right, z down, its origin at the camera. The quaternion w, x, y, z of poses.csv turns what is \
-             given in the body's frame into the world's.\n\
-             - Camera: x right, y down, z forward, along the body's y, z and x. `--camera-from-gyro frd` says that.\n\
+             - Body: x forward, y right, z down, its origin at the camera. The quaternion w, x, y, z of poses.csv is the rotation \
+             from the body's frame to the world's.\n\
+             - Camera: x right, y down, z forward, along the body's y, z and x. `--camera-from-gyro frd` states that.\n\
              - Azimuth is atan2(x, z), positive to the right, elevation atan2(−y, √(x² + z²)), positive up, in the camera's \
              frame.\n\n\
              ## Use\n\n\
@@ -96,12 +96,12 @@ pub(super) fn write(
              \x20   viewsphere eval --truth flow/000000.flo estimate/000000.flo\n\
              \x20   viewsphere run 'frames/%06d.png' --camera camera.yaml --times times.csv --gyro gyro.csv \
              --camera-from-gyro frd\n\n\
-             A sky has a true flow but no texture, and counts in `eval` unless it is left out with `--mask`: it is where depth \
+             The sky has a true flow but no texture, and counts in `eval` unless `--mask` excludes it: the pixels whose depth \
              is infinite.\n";
     write_bytes(folder.path("README.md"), text.as_bytes())
 }
 
-/// A bias in degrees per second, once if it is the same about each axis. The conversion's rounding is not shown.
+/// A bias in degrees per second, once if it is equal about all axes. The conversion's rounding is not shown.
 fn biases(bias_rad_s: DVec3) -> String {
     let [x, y, z] = bias_rad_s.to_array().map(|axis| (axis.to_degrees() * 1e9).round() / 1e9);
     if [y, z] == [x, x] { x.to_string() } else { format!("{x}, {y}, {z}") }

@@ -1,4 +1,4 @@
-//! What is known exactly of each frame.
+//! The ground truth of each frame.
 
 use super::Paint;
 use super::flown::motion;
@@ -11,15 +11,15 @@ use crate::sim::vehicle::VehicleState;
 use crate::sim::{RayTable, Seen, World, displacement, query_rays, ray_grid};
 use crate::sphere::Grid;
 
-/// The divergence of a wall ahead that is met in a second, 1/s.
+/// The divergence of a wall ahead one second before contact, 1/s.
 const FULL_DIVERGENCE_HZ: f64 = 2.0;
 
-/// What can be written beside a frame.
+/// A kind of ground truth that can be written beside the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Truth {
     /// Flow in pixels to the next frame, `.flo`.
     Flow,
-    /// Metres along each pixel's ray, `.npy`.
+    /// Distance along each pixel's ray in metres, `.npy`.
     Depth,
     /// The inverse of the depth, 1/m, `.npy`.
     Nearness,
@@ -27,16 +27,16 @@ pub enum Truth {
     Divergence,
     /// Flow on the view sphere in the camera's frame, rad/s, `.npy`.
     Spherical,
-    /// Metres along rays at even azimuths and elevations, `.npy`.
+    /// Distances along rays at evenly spaced azimuths and elevations in metres, `.npy`.
     Grid,
 }
 
 impl Truth {
-    /// Every truth.
+    /// All kinds.
     pub const ALL: [Self; 6] =
         [Self::Flow, Self::Depth, Self::Nearness, Self::Divergence, Self::Spherical, Self::Grid];
 
-    /// Its name, which is that of its folder.
+    /// The name, also that of the folder.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flow => "flow",
@@ -48,7 +48,7 @@ impl Truth {
         }
     }
 
-    /// Bytes of a frame's file without its header, for pictures and a grid of these sizes.
+    /// The size of a frame's file without its header, for images and a grid of these sizes.
     pub fn bytes(self, size: Size, grid: Size) -> f64 {
         let (pixels, rays) = (size.pixels() as f64, grid.pixels() as f64);
         match self {
@@ -59,8 +59,8 @@ impl Truth {
         }
     }
 
-    /// The value that a picture of it shows in full colour, where there are pictures of it: that of a wall ahead that is met
-    /// in a second at this speed.
+    /// The value shown in full colour, if this kind can be painted: that of a wall ahead one second before contact at
+    /// this speed.
     pub fn full_colour(self, speed_m_s: f64) -> Option<f64> {
         match self {
             Self::Divergence => Some(FULL_DIVERGENCE_HZ),
@@ -70,14 +70,14 @@ impl Truth {
     }
 }
 
-/// Writes truths.
+/// Writes ground truth.
 pub(super) struct Writer<'a> {
     world: &'a World,
     camera: &'a Camera,
     truths: &'a [Truth],
     rays: RayTable,
     grid: Grid,
-    /// How pictures of truths are painted, and the speed that sets their scale.
+    /// The painter, and the speed that sets the colour scale.
     paint: Option<(Paint, f64)>,
 }
 
@@ -93,7 +93,7 @@ impl<'a> Writer<'a> {
         Ok(Self { world, camera, truths, rays: RayTable::new(camera)?, grid, paint })
     }
 
-    /// Writes the truths of a frame. There is no flow without a next one.
+    /// Writes the ground truth of a frame. There is no flow without a next frame.
     pub(super) fn write(
         &self,
         folder: &Folder,
@@ -145,7 +145,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Even azimuths and elevations over all that a camera sees.
+/// A grid of evenly spaced azimuths and elevations over a camera's field of view.
 pub(super) fn grid_over(camera: &Camera, Size { width, height }: Size) -> Result<Grid> {
     let ideal = match camera.lens {
         Lens::NONE => *camera,

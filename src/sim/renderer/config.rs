@@ -1,15 +1,16 @@
 use crate::error::{Error, Result};
 
-/// How a [`Renderer`](super::Renderer) draws.
+/// The configuration of a [`Renderer`](super::Renderer).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RendererConfig {
-    /// Standard deviation of the noise of a pixel, in gray levels of 255: 0 to 64.
+    /// Standard deviation of a pixel's noise, in gray levels of 255: 0 to 64.
     pub noise_levels: f64,
-    /// Poses over which an exposure is averaged, 1 to 8: see [`Renderer::expose`](super::Renderer::expose). 1 is no
-    /// motion blur.
+    /// The number of poses averaged per exposure, 1 to 8: see [`Renderer::expose`](super::Renderer::expose). 1 means
+    /// no motion blur.
     pub blur_poses: usize,
-    /// Surfaces whose nearest point is further away are not shown, metres: above 0, without limit by default.
+    /// The visible range, metres: surfaces whose nearest point is further away are not shown. Above 0, infinite by
+    /// default.
     pub range_m: f64,
 }
 

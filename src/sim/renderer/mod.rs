@@ -1,8 +1,9 @@
-//! The simulator's camera, as kernels that run on a GPU or the CPU: what [`reference_render`](super::reference_render)
-//! shows, fast enough to fly by, and with a sensor's noise.
+//! The simulated camera, as kernels for the GPU or the CPU: the images of
+//! [`reference_render`](super::reference_render), fast enough for flights, and with a sensor's noise.
 //!
-//! A picture takes three kernels: `cast` finds what four samples of each pixel meet, `shade` its gray level, `sensor` adds
-//! noise and rounds. Positions are made relative to the camera on the host in `f64`, and only then rounded.
+//! An image takes three kernels: `cast` finds the surfaces that four samples of each pixel meet, `shade` computes its
+//! gray level, `sensor` adds noise and rounds. Positions are made relative to the camera on the host in `f64`, and
+//! then rounded.
 //!
 //! ```
 //! use viewsphere::Backend;
@@ -43,21 +44,21 @@ pub struct Renderer {
     world: World,
     tiles: Tiles,
     sharp: Runner,
-    /// Of several poses; none where an exposure is one pose.
+    /// The runner of an exposure of several poses; `None` if an exposure is one pose.
     exposure: Option<Runner>,
     scenes: Vec<VisibleSurfaces>,
-    /// Pixels where the lens shows nothing.
+    /// Pixels where the lens shows nothing, row by row.
     blind: Vec<bool>,
     image: Image,
     nearness_per_m: Plane,
 }
 
 impl Renderer {
-    /// A camera in a world.
+    /// A renderer for a camera in a world.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a configuration, size or direction up that is out of range, [`Error::TooLarge`] and
-    /// [`Error::OutOfMemory`] if the adapter has no room for such pictures, [`Error::DeviceLost`] if it is gone.
+    /// [`Error::Parameter`] for a configuration, size or up direction out of range, [`Error::TooLarge`] and
+    /// [`Error::OutOfMemory`] if the adapter cannot hold such images, [`Error::DeviceLost`] if the device is lost.
     pub fn new(backend: Backend, camera: &Camera, world: &World, config: &RendererConfig) -> Result<Self> {
         config.validate()?;
         if !((world.up_world.length() - 1.0).abs() <= 1e-6) {
@@ -81,20 +82,20 @@ impl Renderer {
         })
     }
 
-    /// The picture from a pose, sharp whatever the configuration says of blur. Equal poses and seeds give equal bytes on
-    /// the same device.
+    /// Renders the image from a pose, without motion blur. Equal poses and seeds give equal bytes on the same device.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a pose that is not finite or not a rotation, or from which the tiles of the picture see
-    /// more surfaces than there is room for: 128 a tile on average. [`Error::DeviceLost`] if the device was lost.
+    /// [`Error::Parameter`] for a pose that is not finite or not a rotation, or whose tiles see more surfaces than
+    /// fit: 128 per tile on average. [`Error::DeviceLost`] if the device was lost.
     pub fn render(&mut self, pose: &Pose, frame_seed: u64) -> Result<&Image> {
         self.see(std::slice::from_ref(pose), frame_seed)
     }
 
-    /// The mean of the pictures from the poses of an exposure, [`RendererConfig::blur_poses`] of them in the order of time.
+    /// Renders the mean of the images from the poses of an exposure, [`RendererConfig::blur_poses`] of them in the
+    /// order of time.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; [`Error::Length`] for another number of poses.
+    /// As in [`Renderer::render`]; [`Error::Length`] for another number of poses.
     pub fn expose(&mut self, poses: &[Pose], frame_seed: u64) -> Result<&Image> {
         let expected = self.config.blur_poses;
         if poses.len() != expected {
@@ -103,9 +104,9 @@ impl Renderer {
         self.see(poses, frame_seed)
     }
 
-    /// How near the last picture's pixels are, 1/m along the ray of each one's centre: 0 for the sky, NaN where the lens
-    /// shows nothing. Of an exposure, that of the pose in the middle. Of a pixel with an edge in it, the nearest surface
-    /// that one of its samples meets and its centre, too.
+    /// The nearness of the last image, 1/m along each pixel's central ray: 0 for the sky, NaN where the lens shows
+    /// nothing. For an exposure, that of its middle pose. For a pixel with an edge in it, that of the nearest surface
+    /// that one of its samples and its centre meet.
     pub fn nearness(&self) -> &Plane {
         &self.nearness_per_m
     }
@@ -138,7 +139,7 @@ impl Renderer {
     }
 }
 
-/// Checks that a pose is one.
+/// Checks that a pose is finite and a rotation.
 fn check(pose: &Pose) -> Result<()> {
     if !pose.position_world.is_finite() {
         return Err(Error::parameter("position_world", pose.position_world, "three finite coordinates"));

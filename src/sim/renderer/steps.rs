@@ -1,4 +1,4 @@
-//! The buffers and steps of a picture.
+//! The buffers and steps of rendering.
 
 use super::RendererConfig;
 use super::visible::{Tiles, VisibleSurfaces};
@@ -20,7 +20,7 @@ pub(super) const POSES: [[&str; 3]; RendererConfig::MAX_POSES] = [
     ["surfaces 7", "lists 7", "members 7"],
 ];
 
-/// The plan of a picture that is the mean over an exposure of this many poses.
+/// The plan of an image that averages `poses` poses.
 pub(super) fn plan(
     rays: &RayTable,
     tiles: &Tiles,
@@ -57,7 +57,7 @@ pub(super) fn plan(
         let seen = [table, surfaces, lists, members];
         steps.push(Step::new(&cast::KERNEL, format!("pose {pose}"), params, &seen, &[(ids, quads)]));
         let params = shade::Params { width, height, share: 1.0 / poses as f32 };
-        // The picture's truth is that of the middle of the exposure.
+        // The image's nearness is that of the exposure's middle pose.
         let near = if pose == poses / 2 { nearness } else { other_nearness };
         let shaded = [table, surfaces, ids, sum];
         sum = sums[pose % 2];
@@ -73,7 +73,7 @@ pub(super) fn plan(
     Ok(plan)
 }
 
-/// The `rays` buffer. Where the lens shows nothing, pixels have no width.
+/// The content of the `rays` buffer. Pixels where the lens shows nothing have zero width.
 fn ray_values(rays: &RayTable) -> Vec<f32> {
     pack::padded_groups(rays.size(), |x, y| {
         let (centre, corners) = (rays.centre(x, y), rays.corners(x, y));

@@ -1,5 +1,5 @@
-//! What of a world can be seen from a pose, ready for the kernels: surfaces in the camera's frame, and for each tile of
-//! the picture those that it can see.
+//! The surfaces visible from a pose, as input of the kernels: surfaces in the camera's frame, and for each tile of
+//! the image those that it may see.
 
 use glam::{DMat3, DVec3};
 
@@ -9,14 +9,14 @@ use crate::kernels::surface_layout::{Kind, SURFACE_LEN, SurfaceRecord, TILE};
 use crate::sim::surface::Geometry;
 use crate::sim::{RayTable, Surface, World};
 
-/// Half the side of what stands for an endless plane: 10⁶ km.
+/// Half the side of the square that stands for an endless plane: 10⁶ km.
 const ENDLESS_M: f64 = 1e9;
 /// Grid spacing of the texture's coarsest octave.
 const CELL_M: f64 = 4.0;
-/// A surface in one list of a tile is one member; there is room for so many a tile on average.
+/// The average room per tile for members; a surface in one tile's list is one member.
 const MEMBERS_PER_TILE: usize = 128;
 
-/// The tiles of a picture, and what they can see of the directions x/z and y/z.
+/// The tiles of an image, and their ranges of x/z and y/z.
 pub(super) struct Tiles {
     pub(super) across: usize,
     pub(super) down: usize,
@@ -53,7 +53,7 @@ impl Tiles {
         may_see.map(move |[column, row]| row * self.across + column)
     }
 
-    /// Whether all rays of a tile pass a cylinder on one side of it.
+    /// Whether all rays of a tile pass a cylinder on one side.
     fn passes(&self, [column, row]: [usize; 2], seen: &Visible) -> bool {
         let ([x0, x1], [y0, y1]) = (self.columns[column], self.rows[row]);
         let n = seen.beside;
@@ -66,41 +66,41 @@ impl Tiles {
 
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
-/// A corner between two tiles belongs to both.
+/// Widens the ranges at a corner; one between two tiles belongs to both.
 fn widen(ranges: &mut [[f64; 2]], corner: usize, side: usize, tangent: f64) {
     let last = ranges.len() - 1;
     for range in &mut ranges[(corner.max(1) - 1) / side..=(corner / side).min(last)] {
-        // Not-a-number is passed over by min and max.
+        // min and max ignore NaN.
         *range = [range[0].min(tangent), range[1].max(tangent)];
     }
 }
 
 /// The buffers of one pose.
 pub(super) struct VisibleSurfaces {
-    /// Up, then the surfaces' records.
+    /// The up direction, then the surfaces' records.
     pub(super) surfaces: Vec<f32>,
-    /// Of each tile: its first box in `members`, how many, its first cylinder, how many.
+    /// Per tile: its first box in `members`, their number, its first cylinder, their number.
     pub(super) lists: Vec<f32>,
     pub(super) members: Vec<f32>,
     visible: Vec<Visible>,
-    /// Of each tile, boxes and cylinders.
+    /// Per tile, the numbers of boxes and cylinders.
     counts: Vec<[usize; 2]>,
 }
 
-/// A surface that can be seen.
+/// A visible surface.
 #[derive(Clone, Copy)]
 struct Visible {
     number: usize,
     nearest_m: f64,
     local_from_camera: DMat3,
     camera_local: DVec3,
-    /// First and last column and row of tiles that can see it.
+    /// First and last column and row of the tiles that may see it.
     columns: [usize; 2],
     rows: [usize; 2],
     round: bool,
     /// Normal, in the camera's frame, of the plane through the camera and a cylinder's axis; 0 for other shapes.
     beside: DVec3,
-    /// The sine of the angle that the cylinder fills to either side of that plane.
+    /// The sine of the half angle that the cylinder subtends on either side of that plane.
     sine: f64,
 }
 
@@ -115,20 +115,20 @@ impl VisibleSurfaces {
         }
     }
 
-    /// Length of the `surfaces` buffer that has room for all of a world.
+    /// The length of the `surfaces` buffer for a whole world.
     pub(super) fn surface_values(world: &World) -> usize {
         4 + SURFACE_LEN * world.surfaces.len()
     }
 
-    /// Length of the `members` buffer.
+    /// The length of the `members` buffer.
     pub(super) fn most_members(tiles: &Tiles, world: &World) -> usize {
         (tiles.count() * world.surfaces.len().min(MEMBERS_PER_TILE)).max(1)
     }
 
-    /// Fills the buffers.
+    /// Fills the buffers for a pose.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the tiles see more surfaces than there is room for.
+    /// [`Error::Parameter`] if the tiles see more surfaces than fit.
     pub(super) fn fill(&mut self, tiles: &Tiles, world: &World, pose: &Pose, range_m: f64) -> Result<()> {
         self.see(tiles, world, pose, range_m);
         self.counts.fill([0; 2]);
@@ -141,13 +141,13 @@ impl VisibleSurfaces {
         for (list, counts) in self.lists.as_chunks_mut::<4>().0.iter_mut().zip(&mut self.counts) {
             let [boxes, cylinders] = *counts;
             *list = [first, boxes, first + boxes, cylinders].map(|value| value as f32);
-            // From here on, where the next one goes.
+            // From here on, the position of the next member.
             *counts = [first, first + boxes];
             first += boxes + cylinders;
         }
         let most = Self::most_members(tiles, world);
         if first > most {
-            let found = format!("one of which the picture's tiles see {first} surfaces in all");
+            let found = format!("one of whose surfaces the image's tiles see {first} in total");
             return Err(Error::parameter("world", found, format_args!("at most {most}")));
         }
         self.members.clear();
@@ -168,7 +168,7 @@ impl VisibleSurfaces {
         Ok(())
     }
 
-    /// Finds the surfaces that can be seen, nearest first.
+    /// Finds the visible surfaces, nearest first.
     fn see(&mut self, tiles: &Tiles, world: &World, pose: &Pose, range_m: f64) {
         self.visible.clear();
         let whole = |ranges: &[[f64; 2]]| {
@@ -193,7 +193,7 @@ impl VisibleSurfaces {
                 let seen = |range: &[f64; 2]| {
                     reaches(across - range[0] * ahead) && reaches(range[1] * ahead - across)
                 };
-                // What is convex is seen by neighbours.
+                // A convex surface is seen by adjacent tiles.
                 let first = ranges.iter().position(seen)?;
                 ranges.iter().rposition(seen).map(|last| [first, last])
             };
@@ -204,7 +204,7 @@ impl VisibleSurfaces {
                 Geometry::Cylinder { radius_m, .. } => {
                     let away_m = camera_local.truncate().length();
                     let normal = DVec3::new(-camera_local.y, camera_local.x, 0.0) / away_m;
-                    // The margin is for what is rounded.
+                    // The margin covers rounding.
                     (local_from_camera.transpose() * normal, radius_m / away_m + 1e-6)
                 }
                 _ => (DVec3::ZERO, 1.0),
@@ -242,7 +242,7 @@ fn record(seen: &Visible, surface: &Surface) -> SurfaceRecord {
         axes: rows.map(|row| row.map(|value| value as f32)),
         place_m: (place - DVec3::Z * middle_m).as_vec3().to_array(),
         half_m: half_m.as_vec3().to_array(),
-        // Rounded, it may be beyond the nearest point.
+        // Rounding could move it beyond the nearest point.
         nearest_m: (seen.nearest_m * (1.0 - 1e-6)) as f32,
         texture_m: (place - cells * CELL_M).as_vec3().to_array(),
         cells: cells.as_vec3().to_array(),

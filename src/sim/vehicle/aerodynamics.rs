@@ -1,4 +1,4 @@
-//! Forces and moments of the air.
+//! Aerodynamic forces and moments.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::params::AirframeParams;
 
-/// How the air meets the body.
+/// The flow of air relative to the body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inflow {
     pub(super) speed_m_s: f64,
@@ -15,7 +15,7 @@ pub(super) struct Inflow {
 }
 
 impl Inflow {
-    /// Of a velocity relative to the air, FRD. Air at rest comes from ahead.
+    /// From a velocity relative to the air, FRD. Air at rest comes from ahead.
     pub(super) fn new(air_velocity_body_m_s: DVec3) -> Self {
         let DVec3 { x, y, z } = air_velocity_body_m_s;
         Self {
@@ -27,20 +27,20 @@ impl Inflow {
 }
 
 impl AirframeParams {
-    /// ½ρV²S, N: what a coefficient of 1 is worth.
+    /// ½ρV²S, N: the force of a coefficient of 1.
     pub(super) fn pressure_force_n(&self, speed_m_s: f64) -> f64 {
         0.5 * self.air_density_kg_m3 * speed_m_s * speed_m_s * self.wing_area_m2
     }
 
-    /// How much of the wing has stalled, 0 to 1.
+    /// The stalled share of the wing, 0 to 1.
     fn stalled(&self, attack_rad: f64) -> f64 {
         let [over, under] = [attack_rad - self.stall_rad, -attack_rad - self.stall_rad]
             .map(|beyond| 1.0 / (1.0 + (-self.stall_sharpness * beyond).exp()));
         over + under - over * under
     }
 
-    /// C_L and C_D at an angle of attack: a wing's, and once it has stalled a flat plate's, whose force 2 sin²α stands
-    /// across it.
+    /// C_L and C_D at an angle of attack: those of a wing, and once it has stalled of a flat plate, whose force 2
+    /// sin²α is normal to it.
     pub(super) fn lift_and_drag(&self, attack_rad: f64) -> [f64; 2] {
         let stalled = self.stalled(attack_rad);
         let (sin, cos) = attack_rad.sin_cos();
@@ -51,7 +51,7 @@ impl AirframeParams {
         [lift, self.drag_zero + (1.0 - stalled) * induced + stalled * plate * sin]
     }
 
-    /// The air's force without the propeller's, N FRD.
+    /// The aerodynamic force without the propeller's, N FRD.
     pub(super) fn force_n(&self, inflow: &Inflow) -> DVec3 {
         let [lift, drag] = self.lift_and_drag(inflow.attack_rad);
         let (sin, cos) = inflow.attack_rad.sin_cos();
@@ -60,7 +60,7 @@ impl AirframeParams {
             * DVec3::new(lift * sin - drag * cos, side, -lift * cos - drag * sin)
     }
 
-    /// The air's moment without the control surfaces', N m FRD.
+    /// The aerodynamic moment without the control surfaces', N m FRD.
     pub(super) fn moment_n_m(&self, inflow: &Inflow, rate_body_rad_s: DVec3) -> DVec3 {
         let Inflow { speed_m_s, attack_rad, sideslip_rad } = *inflow;
         let arm_m = DVec3::new(self.span_m, self.chord_m, self.span_m);
@@ -77,7 +77,7 @@ impl AirframeParams {
         arm_m * (self.pressure_force_n(speed_m_s) * vane + damping)
     }
 
-    /// The largest C_L, to a tenth of a degree of attack.
+    /// The largest C_L, to a tenth of a degree in the angle of attack.
     pub(super) fn largest_lift(&self) -> f64 {
         let steps = (FRAC_PI_2.to_degrees() * 10.0) as u32;
         let lift = |step: u32| self.lift_and_drag((f64::from(step) / 10.0).to_radians())[0];
@@ -100,7 +100,7 @@ mod tests {
     fn lift_and_drag_are_a_wings_below_the_stall_and_a_plates_beyond() {
         let params = AirframeParams::default();
         let at = |degrees: f64| params.lift_and_drag(degrees.to_radians());
-        // Flow that parts at 15° leaves e^(−40·0.26) of a wing at 0°, on either side.
+        // A stall at 15° leaves e^(−40·0.26) of its share at 0°, on either side.
         let [lift, drag] = at(0.0);
         assert!((lift - 0.25).abs() <= 3e-5 && (drag - 0.035 - 0.0625 / (PI * 0.8 * 4.8)).abs() <= 1e-5);
         // Half of each at 15°.
@@ -127,7 +127,7 @@ mod tests {
             let velocity = DVec3::new(angle.sin(), (1.7 * angle).cos(), (2.3 * angle).sin()) * 15.0;
             let inflow = Inflow::new(velocity);
             assert!(params.force_n(&inflow).dot(velocity) < 0.0, "{velocity}");
-            // What is left of the moment when the vanes' part is taken off only damps.
+            // Without the static part, the remaining moment only damps.
             let rate = DVec3::new((3.1 * angle).sin(), angle.cos(), (0.7 * angle).sin());
             let damping = params.moment_n_m(&inflow, rate) - params.moment_n_m(&inflow, DVec3::ZERO);
             assert!(damping.dot(rate) < 0.0, "{damping} {rate}");
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(params.moment_n_m(&still, DVec3::ONE), DVec3::ZERO);
     }
 
-    /// The signs of a stable airframe: it turns its nose into the wind, and rolls away from it.
+    /// The signs of a stable airframe: it yaws into the wind, and rolls away from it.
     #[test]
     fn the_vanes_turn_into_the_wind() {
         let params = AirframeParams::default();

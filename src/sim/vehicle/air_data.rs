@@ -1,4 +1,4 @@
-//! Sensors of the air that meets the vehicle.
+//! Air data sensors: airspeed and vanes.
 
 use glam::DVec3;
 
@@ -8,17 +8,17 @@ use super::stream::Stream;
 use crate::error::{Error, Result};
 use crate::sim::Random;
 
-/// An airspeed sensor whose scale is wrong by the same share for a whole flight.
+/// An airspeed sensor with a scale error that is constant for a whole flight.
 #[derive(Clone, Debug)]
 pub struct AirspeedModel {
     scale: f64,
 }
 
 impl AirspeedModel {
-    /// The share that [`AirspeedModel::new`] is given as a rule: a pressure tube's that has been calibrated once.
+    /// The usual error for [`AirspeedModel::new`]: that of a pitot tube calibrated once.
     pub const USUAL: f64 = 0.03;
 
-    /// A sensor whose error is drawn anywhere from −`error` to `error`, a share of the airspeed below 1.
+    /// A sensor whose scale error is uniform in −`error` to `error`, a share of the airspeed below 1.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a share that is not 0 or above and below 1.
@@ -29,24 +29,24 @@ impl AirspeedModel {
         Ok(Self { scale: 1.0 + Stream::Airspeed.of(seed).within([-error, error]) })
     }
 
-    /// What it shows, m/s.
+    /// The reading, m/s.
     pub fn speed_m_s(&self, state: &VehicleState) -> f64 {
         self.scale * state.air_velocity_body_m_s.length()
     }
 }
 
-/// What is wrong with a pair of vanes. Both are standard deviations, of each vane, in radians, 0 or above.
+/// The errors of a pair of vanes: standard deviations per vane, in radians, 0 or above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VaneErrors {
-    /// How they are mounted: the same for a whole flight.
+    /// The mounting error: constant for a whole flight.
     pub fixed_rad: f64,
-    /// How they flutter: anew each time.
+    /// The flutter: drawn anew for each reading.
     pub jitter_rad: f64,
 }
 
 impl Default for VaneErrors {
-    /// 1.4° of mounting, which is 2° for the direction, and 0.3° of flutter.
+    /// 1.4° of mounting error, which is 2° for the direction, and 0.3° of flutter.
     fn default() -> Self {
         Self { fixed_rad: 1.4_f64.to_radians(), jitter_rad: 0.3_f64.to_radians() }
     }
@@ -57,8 +57,8 @@ impl VaneErrors {
     pub const NONE: Self = Self { fixed_rad: 0.0, jitter_rad: 0.0 };
 }
 
-/// Vanes that show where the vehicle goes relative to the air: in calm air where it goes, in a wind that and the wind's
-/// share.
+/// A pair of vanes that measure the direction of motion relative to the air: in calm air that over ground, in wind
+/// with the wind's part.
 #[derive(Clone, Debug)]
 pub struct VaneModel {
     fixed_rad: [f64; 2],
@@ -67,7 +67,7 @@ pub struct VaneModel {
 }
 
 impl VaneModel {
-    /// A pair for the angle of attack and the sideslip. The same seed gives the same errors.
+    /// Vanes for the angle of attack and the sideslip. The same seed gives the same errors.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a deviation that is negative or not finite.
@@ -79,7 +79,7 @@ impl VaneModel {
         Ok(Self { fixed_rad, jitter_rad: errors.jitter_rad, random })
     }
 
-    /// The direction of motion that they show: a unit vector, FRD.
+    /// The measured direction of motion: a unit vector, FRD.
     pub fn direction_body(&mut self, state: &VehicleState) -> DVec3 {
         let inflow = Inflow::new(state.air_velocity_body_m_s);
         let [attack, sideslip] = [inflow.attack_rad, inflow.sideslip_rad];

@@ -9,12 +9,12 @@ use crate::camera::world_from_body;
 use crate::error::Result;
 use crate::steer::Command;
 
-/// A fixed wing as a rigid body, flown by an inner loop.
+/// A fixed-wing aircraft as a rigid body, flown by an inner control loop.
 ///
-/// The air's forces are those of Beard & McLain, *Small Unmanned Aircraft* (2012), chapter 4: lift with a stall, drag with
-/// an induced part, side force, and moments with damping; control surfaces turn with a torque that does not depend on the
-/// airspeed. The equations of motion are integrated by Runge and Kutta's method of the fourth order in `f64`, with
-/// controls and wind held over a step.
+/// The aerodynamic model is that of Beard & McLain, *Small Unmanned Aircraft* (2012), chapter 4: lift with a stall,
+/// drag with an induced part, side force, and moments with damping; control surfaces exert a torque that does not
+/// depend on the airspeed. The equations of motion are integrated by the fourth-order Runge–Kutta method in `f64`,
+/// with controls and wind held over a step.
 #[derive(Clone, Debug)]
 pub struct Airframe {
     params: AirframeParams,
@@ -47,12 +47,12 @@ impl Airframe {
         Ok(Self { params: *params, autopilot: *autopilot, speed_command_m_s, wind, time_s: 0.0, body })
     }
 
-    /// What it is made of.
+    /// The airframe's parameters.
     pub fn params(&self) -> &AirframeParams {
         &self.params
     }
 
-    /// Asks for another airspeed, m/s.
+    /// Sets the commanded airspeed, m/s.
     ///
     /// # Errors
     /// [`Error::Parameter`](crate::Error::Parameter) for one that is not above 0 and finite.
@@ -62,7 +62,7 @@ impl Airframe {
         Ok(())
     }
 
-    /// What the inner loop would have the controls do now.
+    /// The controls that the inner loop commands now.
     pub fn controls(&self, command: &Command) -> Controls {
         let now = Measured {
             world_from_body: self.body.rotation(),
@@ -73,8 +73,8 @@ impl Airframe {
         self.autopilot.controls(&self.params, &now, &sound(command), self.speed_command_m_s)
     }
 
-    /// One step with the controls held by someone else, within the airframe's limits. Those that are not finite count as
-    /// 0. For the step as for [`Vehicle::advance`].
+    /// Advances by one step with the given controls, clamped to the airframe's limits. Values that are not finite
+    /// count as 0. The step is as in [`Vehicle::advance`].
     pub fn advance_held(&mut self, controls: &Controls, step_s: f64) {
         let Some(step_s) = bounded(step_s) else { return };
         let finite = controls.torque_body_n_m.is_finite() && controls.thrust_n.is_finite();

@@ -8,26 +8,28 @@ use crate::camera::roll_pitch_yaw_rad;
 use crate::error::Result;
 use crate::steer::Command;
 
-/// Commands of bank are kept below this, radians: at 75° the wing carries nearly four times the weight.
+/// The limit of bank commands, radians: at 75° the wing carries nearly four times the weight.
 const STEEPEST_RAD: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
-/// The inner loop: from bank, climb and airspeed to torques and thrust. Each gain is how fast an error goes, 1/s.
+/// The inner control loop: from bank, climb and airspeed commands to torques and thrust. Each gain is the decay rate
+/// of an error, 1/s.
 ///
-/// It knows the airframe, and its motion without error. Steps of its torques are as long as those of the integration.
+/// It knows the airframe, and measures its motion without error. Its torques are updated once per integration step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Autopilot {
     /// Bank error to roll rate.
     pub bank_per_s: f64,
-    /// The largest roll rate asked for, rad/s.
+    /// The maximum commanded roll rate, rad/s.
     pub roll_limit_rad_s: f64,
     /// Errors of the three body rates to torques.
     pub rate_per_s: f64,
-    /// Climb error to the turn of the path.
+    /// Climb error to the rate of the path angle.
     pub climb_per_s: f64,
     /// Error of the angle of attack to pitch rate.
     pub attack_per_s: f64,
-    /// The largest angle of attack asked for, radians. Below the stall it keeps the wing from stalling, and turns wider.
+    /// The maximum commanded angle of attack, radians. Below the stall it prevents stalling, at the cost of wider
+    /// turns.
     pub attack_limit_rad: f64,
     /// Sideslip to yaw rate.
     pub sideslip_per_s: f64,
@@ -36,7 +38,7 @@ pub struct Autopilot {
 }
 
 impl Default for Autopilot {
-    /// Gains that take up a bank of 45° in half a second at 12 m/s, and an angle of attack that may stall.
+    /// Gains that reach a bank of 45° in half a second at 12 m/s, and an angle of attack that may stall.
     fn default() -> Self {
         Self {
             bank_per_s: 6.0,
@@ -51,13 +53,13 @@ impl Default for Autopilot {
     }
 }
 
-/// What the inner loop knows of the motion.
+/// The inner loop's measurements of the motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     pub(super) world_from_body: DMat3,
     pub(super) rate_body_rad_s: DVec3,
     pub(super) air_velocity_body_m_s: DVec3,
-    /// Up, m/s over ground.
+    /// The climb rate over ground, m/s, positive upwards.
     pub(super) climb_m_s: f64,
 }
 
@@ -82,7 +84,7 @@ impl Autopilot {
         Ok(())
     }
 
-    /// Torques and thrust, within the airframe's limits.
+    /// Torques and thrust, clamped to the airframe's limits.
     pub(super) fn controls(
         &self,
         params: &AirframeParams,
@@ -91,7 +93,7 @@ impl Autopilot {
         speed_command_m_s: f64,
     ) -> Controls {
         let inflow = Inflow::new(now.air_velocity_body_m_s);
-        // Below 1 m/s nothing flies, and nothing is to be divided by.
+        // Below 1 m/s nothing flies; the limit avoids division by zero.
         let speed = inflow.speed_m_s.max(1.0);
         let [bank, pitch, _] = roll_pitch_yaw_rad(&now.world_from_body);
         let climb = (now.climb_m_s / speed).clamp(-1.0, 1.0).asin();
@@ -100,13 +102,13 @@ impl Autopilot {
         let roll_rate =
             (self.bank_per_s * (bank_command - bank)).clamp(-self.roll_limit_rad_s, self.roll_limit_rad_s);
 
-        // The acceleration across the path that turns it as asked and carries the weight, by a lift that is banked.
+        // The acceleration normal to the path that gives the commanded rate and carries the weight, by banked lift.
         let level = speed * self.climb_per_s * (command.climb_rad - climb) + GRAVITY_M_S2 * climb.cos();
         let across_m_s2 = level / bank.cos().max(STEEPEST_RAD.cos());
         let lift = params.mass_kg * across_m_s2 / params.pressure_force_n(speed);
         let attack = ((lift - params.lift_zero) / params.lift_slope())
             .clamp(-self.attack_limit_rad, self.attack_limit_rad);
-        // Where the limit holds the lift back, the path turns by what is left of it.
+        // Where the limit caps the lift, the path turns by what remains.
         let lift = params.lift_zero + params.lift_slope() * attack;
         let across_m_s2 = lift * params.pressure_force_n(speed) / params.mass_kg;
         let pitch_rate = self.attack_per_s * (attack - inflow.attack_rad)
@@ -127,7 +129,7 @@ impl Autopilot {
 }
 
 impl Controls {
-    /// As far as the airframe can give it.
+    /// Clamped to the airframe's limits.
     pub(super) fn within(&self, params: &AirframeParams) -> Self {
         Self {
             torque_body_n_m: self.torque_body_n_m.clamp(-params.torque_limit_n_m, params.torque_limit_n_m),

@@ -6,7 +6,7 @@ use super::aerodynamics::Inflow;
 use super::params::AirframeParams;
 use super::state::GRAVITY_M_S2;
 
-/// What turns and pulls a body beside the air and its weight.
+/// Forces and torques on the body beside those of air and weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Controls {
     /// Torques of aileron, elevator and rudder, N m FRD: right wing down, nose up, nose right.
@@ -15,7 +15,7 @@ pub struct Controls {
     pub thrust_n: f64,
 }
 
-/// A body's motion, or the rate at which it changes.
+/// The state of a body's motion, or its time derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Body {
     pub(super) position_ned_m: DVec3,
@@ -29,7 +29,7 @@ impl Body {
         self.world_from_body.conjugate() * (self.velocity_ned_m_s - wind_ned_m_s)
     }
 
-    /// The body after going on at a rate for a time.
+    /// The state after a time at a constant rate of change.
     fn moved(&self, rate: &Self, time_s: f64) -> Self {
         Self {
             position_ned_m: self.position_ned_m + rate.position_ned_m * time_s,
@@ -39,7 +39,7 @@ impl Body {
         }
     }
 
-    /// Newton's and Euler's equations.
+    /// The rate of change, by Newton's and Euler's equations.
     fn change(&self, params: &AirframeParams, controls: &Controls, wind_ned_m_s: DVec3) -> Self {
         let rate = self.rate_body_rad_s;
         let inflow = Inflow::new(self.air_velocity_body_m_s(wind_ned_m_s));
@@ -55,7 +55,7 @@ impl Body {
         }
     }
 
-    /// One step of the classical method of Runge and Kutta, with controls and wind held.
+    /// One step of the classical Runge–Kutta method, with controls and wind held.
     pub(super) fn advance(
         &mut self,
         params: &AirframeParams,

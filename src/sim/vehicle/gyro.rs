@@ -6,24 +6,24 @@ use crate::error::Result;
 use crate::imu::GyroSample;
 use crate::sim::Random;
 
-/// The largest bias about an axis, rad/s: what a gyro of 2000°/s, the widest that small ones come with, can say at all.
+/// The largest bias about an axis, rad/s: the full scale of a 2000 °/s gyro, the widest among small ones.
 pub const MAX_BIAS_RAD_S: f64 = 35.0;
 
-/// What is wrong with a gyro.
+/// The errors of a gyro.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct GyroErrors {
-    /// Density of the white noise of each axis, rad/s/√Hz, 0 to 1. The angle of a time T is wrong by √T of it.
+    /// Density of each axis' white noise, rad/s/√Hz, 0 to 1. The angle over a time T has an error of √T times it.
     pub noise_rad_s_rthz: f64,
-    /// Density of the noise that the bias of each axis walks by, rad/s²/√Hz, 0 to 1.
+    /// Density of the noise that drives each axis' bias random walk, rad/s²/√Hz, 0 to 1.
     pub bias_walk_rad_s2_rthz: f64,
     /// The bias at the start, rad/s FRD, each axis within ±[`MAX_BIAS_RAD_S`].
     pub bias_rad_s: DVec3,
 }
 
 impl Default for GyroErrors {
-    /// 3.4e-4 rad/s/√Hz and 3.9e-5 rad/s²/√Hz, those of a small MEMS gyro, which Agile Autonomy (Loquercio et al. 2021)
-    /// flies with; no bias at the start.
+    /// 3.4e-4 rad/s/√Hz and 3.9e-5 rad/s²/√Hz, those of a small MEMS gyro, as used by Agile Autonomy (Loquercio et
+    /// al. 2021); no bias at the start.
     fn default() -> Self {
         Self { noise_rad_s_rthz: 3.4e-4, bias_walk_rad_s2_rthz: 3.9e-5, bias_rad_s: DVec3::ZERO }
     }
@@ -34,8 +34,8 @@ impl GyroErrors {
     pub const NONE: Self =
         Self { noise_rad_s_rthz: 0.0, bias_walk_rad_s2_rthz: 0.0, bias_rad_s: DVec3::ZERO };
 
-    /// White noise of a standard deviation in the mean over frames of a length, rad/s and seconds, and the same bias about
-    /// each axis, rad/s: 0.2 °/s over 1/30 s is a density of 6.4e-4 rad/s/√Hz.
+    /// White noise whose mean over a frame has the standard deviation `noise_rad_s`, and the same bias about each
+    /// axis, rad/s: 0.2 °/s over 1/30 s is a density of 6.4e-4 rad/s/√Hz.
     pub fn over_frames(noise_rad_s: f64, frame_s: f64, bias_rad_s: f64) -> Self {
         Self {
             noise_rad_s_rthz: noise_rad_s * frame_s.sqrt(),
@@ -56,9 +56,9 @@ impl GyroErrors {
     }
 }
 
-/// A gyro on board, along the body's axes: FRD, so that
+/// An on-board gyro, along the body's axes: FRD, so that
 /// [`GyroConfig::camera_from_gyro`](crate::imu::GyroConfig::camera_from_gyro) is
-/// [`FRD_FROM_CAMERA`](crate::camera::FRD_FROM_CAMERA) transposed. It has a bandwidth without end, and no delay.
+/// [`FRD_FROM_CAMERA`](crate::camera::FRD_FROM_CAMERA) transposed. It has unlimited bandwidth and no delay.
 #[derive(Clone, Debug)]
 pub struct GyroModel {
     errors: GyroErrors,
@@ -68,18 +68,18 @@ pub struct GyroModel {
 }
 
 impl GyroModel {
-    /// A gyro that has measured nothing yet. The same seed gives the same errors.
+    /// A gyro without samples. The same seed gives the same errors.
     ///
     /// # Errors
-    /// As [`GyroErrors::validate`].
+    /// As in [`GyroErrors::validate`].
     pub fn new(errors: &GyroErrors, seed: u64) -> Result<Self> {
         errors.validate()?;
         Ok(Self { errors: *errors, bias_rad_s: errors.bias_rad_s, last: None, random: Stream::Gyro.of(seed) })
     }
 
-    /// The next sample, to be taken at every step. A state of the time of the one before gives the same sample again.
+    /// The next sample, to be taken at every step. A state with the previous one's time gives the same sample again.
     pub fn sample(&mut self, state: &VehicleState) -> GyroSample {
-        // The first sample stands for a step like those to come.
+        // The first sample represents a step of the usual length.
         let mut interval_s = STEP_S;
         if let Some(last) = self.last {
             interval_s = state.time_s - last.time_s;

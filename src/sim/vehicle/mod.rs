@@ -1,8 +1,8 @@
-//! Vehicles to fly through worlds, the wind they fly in, and the sensors on board.
+//! Vehicles, wind, and on-board sensors.
 //!
-//! Worlds are in NED (north, east, down), bodies in FRD (forward, right, down). A [`Vehicle`] takes a
-//! [`Command`](crate::steer::Command) and goes on by a step: [`CoordinatedTurn`] is a point whose bank lags behind,
-//! [`Airframe`] a rigid body in the air with an inner loop.
+//! Worlds are in NED (north, east, down), bodies in FRD (forward, right, down). A [`Vehicle`] follows a
+//! [`Command`](crate::steer::Command) step by step: [`CoordinatedTurn`] is a point whose bank follows with a lag,
+//! [`Airframe`] a rigid body in the air with an inner control loop.
 //!
 //! ```
 //! use glam::DVec3;
@@ -16,7 +16,7 @@
 //! for _ in 0..480 {
 //!     plane.advance(&to_the_right, STEP_S);
 //! }
-//! // After two seconds it has turned by some 80° and kept its height.
+//! // After two seconds it has turned by some 80° and kept its altitude.
 //! let state = plane.state();
 //! assert!(state.world_from_body.x_axis.y > 0.9);
 //! assert!((state.position_ned_m.z + 20.0).abs() < 0.1);

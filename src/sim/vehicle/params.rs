@@ -3,9 +3,9 @@ use glam::DVec3;
 use super::state::{GRAVITY_M_S2, not_negative, positive};
 use crate::error::{Error, Result};
 
-/// What an [`Airframe`](super::Airframe) is made of.
+/// The parameters of an [`Airframe`](super::Airframe).
 ///
-/// Coefficients are without dimension, angles in radians; α is the angle of attack, β the sideslip. Derivatives by a rate
+/// Coefficients are dimensionless, angles in radians; α is the angle of attack, β the sideslip. Derivatives by a rate
 /// are those by p b/2V, q c/2V and r b/2V. Signs are those of FRD: a stable airframe has `roll_by_sideslip` and
 /// `pitch_by_attack` below 0, `yaw_by_sideslip` above 0, and every damping below 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,35 +29,35 @@ pub struct AirframeParams {
     pub drag_zero: f64,
     /// Oswald's efficiency e: the induced drag is C_L²/(π e AR).
     pub oswald: f64,
-    /// Where the wing stalls, α₀.
+    /// The angle of attack at which the wing stalls, α₀.
     pub stall_rad: f64,
-    /// How sharply it does, M per radian: the flow has parted by 1/(1 + e^(−M(α − α₀))).
+    /// The sharpness of the stall, M per radian: the stalled share is 1/(1 + e^(−M(α − α₀))).
     pub stall_sharpness: f64,
     /// C_Yβ, side force.
     pub side_by_sideslip: f64,
     /// C_lβ, dihedral.
     pub roll_by_sideslip: f64,
-    /// C_lp, damping of the roll.
+    /// C_lp, roll damping.
     pub roll_damping: f64,
     /// C_mα, about `pitch_attack_rad`.
     pub pitch_by_attack: f64,
-    /// Where the pitching moment is 0 without elevator.
+    /// The angle of attack at which the pitching moment is 0 without elevator.
     pub pitch_attack_rad: f64,
-    /// C_mq, damping of the pitch.
+    /// C_mq, pitch damping.
     pub pitch_damping: f64,
-    /// C_nβ, the weathervane.
+    /// C_nβ, weathervane stability.
     pub yaw_by_sideslip: f64,
-    /// C_nr, damping of the yaw.
+    /// C_nr, yaw damping.
     pub yaw_damping: f64,
-    /// The most that aileron, elevator and rudder turn with, N m.
+    /// The maximum torques of aileron, elevator and rudder, N m.
     pub torque_limit_n_m: DVec3,
-    /// The most that the propeller pulls with along the nose, N. It does not brake.
+    /// The propeller's maximum thrust along the nose, N. It does not brake.
     pub thrust_limit_n: f64,
 }
 
 impl Default for AirframeParams {
-    /// A foam plane of 1.2 kg and 1.2 m span that stalls at 7.3 m/s and is flown at 12 m/s. The numbers are typical of such
-    /// planes, and measured on none.
+    /// A foam plane of 1.2 kg and 1.2 m span that stalls at 7.3 m/s and is flown at 12 m/s. The numbers are typical
+    /// of such planes, not measured on one.
     fn default() -> Self {
         Self {
             mass_kg: 1.2,
@@ -121,7 +121,7 @@ impl AirframeParams {
             ("pitch_damping", self.pitch_damping),
             ("yaw_damping", self.yaw_damping),
         ] {
-            // With the other sign the air would drive what it has to damp.
+            // With the other sign the air would excite what it should damp.
             not_negative(name, -value)
                 .map_err(|_| Error::parameter(name, value, "0 or below, and finite"))?;
         }
@@ -149,7 +149,7 @@ impl AirframeParams {
         self.span_m * self.span_m / self.wing_area_m2
     }
 
-    /// C_Lα = 2π AR/(AR + 2) per radian, of a wing that is not long.
+    /// C_Lα = 2π AR/(AR + 2) per radian, of a wing of moderate aspect ratio.
     pub fn lift_slope(&self) -> f64 {
         let ratio = self.aspect_ratio();
         std::f64::consts::TAU * ratio / (ratio + 2.0)

@@ -4,24 +4,23 @@ use crate::camera::{FRD_FROM_CAMERA, Pose};
 use crate::error::{Error, Result};
 use crate::steer::Command;
 
-/// Acceleration of gravity, m/s²: the standard one.
+/// Standard acceleration of gravity, m/s².
 pub const GRAVITY_M_S2: f64 = 9.80665;
-/// The step that the vehicles are made for, seconds: eight in a frame of 1/30 s.
+/// The usual step of the vehicles, seconds: eight per frame of 1/30 s.
 pub const STEP_S: f64 = 1.0 / 240.0;
-/// The longest step that is taken, seconds. Runge and Kutta's method is stable on the airframe up to twice that.
+/// The longest integration step, seconds. The Runge–Kutta method is stable on the airframe up to twice that.
 pub const MAX_STEP_S: f64 = 1.0 / 30.0;
 
-/// Where a vehicle is and how it moves. The world's frame is north, east, down (NED), the body's forward, right, down
-/// (FRD).
+/// The state of a vehicle. The world's frame is north, east, down (NED), the body's forward, right, down (FRD).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleState {
     /// Time since the start, seconds.
     pub time_s: f64,
-    /// Place, metres NED.
+    /// Position, metres NED.
     pub position_ned_m: DVec3,
     /// Velocity over ground, m/s NED.
     pub velocity_ned_m_s: DVec3,
-    /// The rotation that turns what is given in the body's frame into the world's.
+    /// The rotation from the body's frame to the world's.
     pub world_from_body: DMat3,
     /// Angular rate relative to the world, rad/s FRD.
     pub rate_body_rad_s: DVec3,
@@ -39,27 +38,27 @@ impl VehicleState {
     }
 }
 
-/// Something that flies where it is told.
+/// A vehicle that follows commands.
 pub trait Vehicle: Send {
-    /// Where it is now.
+    /// The present state.
     fn state(&self) -> VehicleState;
 
-    /// One step of integration under a command, [`STEP_S`] as a rule.
+    /// Advances by one step under a command, usually [`STEP_S`].
     ///
-    /// A command that is not finite in both parts counts as wings level, no climb: what follows an autopilot's last
-    /// resort, and no state ever turns into not-a-number. Nothing happens for a step that is not above 0, and a longer one
-    /// than [`MAX_STEP_S`] is cut to that; [`VehicleState::time_s`] says what was flown.
+    /// A command whose bank or climb is not finite counts as level wings and no climb, so that the state never
+    /// becomes NaN. A step that is not above 0 changes nothing, and one longer than [`MAX_STEP_S`] is clamped to
+    /// that; [`VehicleState::time_s`] has the time flown.
     fn advance(&mut self, command: &Command, step_s: f64);
 }
 
-/// Where a flight begins: level, in trim, relative to the air.
+/// The start of a flight: level, trimmed relative to the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// Place, metres NED.
+    /// Position, metres NED.
     pub position_ned_m: DVec3,
     /// Heading, radians clockwise from north.
     pub yaw_rad: f64,
-    /// Airspeed, m/s, above 0. It is also the one that is held.
+    /// Airspeed, m/s, above 0. It is also the commanded one.
     pub speed_m_s: f64,
 }
 
@@ -79,12 +78,12 @@ impl Start {
     }
 }
 
-/// A command to be flown: wings level in place of one that is not finite.
+/// The command, or level wings if it is not finite.
 pub(super) fn sound(command: &Command) -> Command {
     if command.bank_rad.is_finite() && command.climb_rad.is_finite() { *command } else { Command::default() }
 }
 
-/// A step to be flown; `None` for no step.
+/// The clamped step; `None` for one that is not above 0.
 pub(super) fn bounded(step_s: f64) -> Option<f64> {
     (step_s > 0.0).then(|| step_s.min(MAX_STEP_S))
 }

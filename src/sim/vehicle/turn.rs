@@ -8,10 +8,10 @@ use crate::camera::world_from_body;
 use crate::error::{Error, Result};
 use crate::steer::Command;
 
-/// Bank and climb are kept below this, radians: at 90° a level turn would need endless lift.
+/// The limit of bank and climb, radians: at 90° a level turn would need infinite lift.
 const STEEPEST_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
 
-/// How quickly a [`CoordinatedTurn`] follows its commands.
+/// The response of a [`CoordinatedTurn`] to its commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TurnParams {
@@ -21,12 +21,12 @@ pub struct TurnParams {
     pub bank_rate_rad_s: f64,
     /// Time constant of the climb, seconds, above 0.
     pub climb_lag_s: f64,
-    /// Angle of attack at all times, radians, below 90° either way.
+    /// Constant angle of attack, radians, within ±90°.
     pub attack_rad: f64,
 }
 
 impl Default for TurnParams {
-    /// 0.2 s and 150 °/s for the bank, 0.4 s for the climb, the nose along the flight.
+    /// 0.2 s and 150 °/s for the bank, 0.4 s for the climb, the nose along the flight path.
     fn default() -> Self {
         Self { bank_lag_s: 0.2, bank_rate_rad_s: 150_f64.to_radians(), climb_lag_s: 0.4, attack_rad: 0.0 }
     }
@@ -48,15 +48,15 @@ impl TurnParams {
     }
 }
 
-/// A point that flies coordinated turns: ψ̇ = g tan φ / V at a constant airspeed, with the bank φ and the climb γ behind
-/// their commands. A banked wing whose lift carries its weight along a straight or climbing path turns at just that rate,
-/// whatever γ is.
+/// A point that flies coordinated turns: ψ̇ = g tan φ / V at a constant airspeed, with the bank φ and the climb γ
+/// lagging behind their commands. A banked wing whose lift carries its weight along a straight or climbing path turns
+/// at just that rate, whatever γ is.
 ///
-/// Relative to the air there is no sideslip, and the angle of attack is constant, about the body's y axis; with none the
-/// pitch is the climb. Wind adds to the velocity over ground, and a vertical wind lifts the whole.
+/// Relative to the air there is no sideslip, and the angle of attack is constant, about the body's y axis; if it is 0
+/// the pitch equals the climb. Wind adds to the velocity over ground, and a vertical wind lifts the vehicle.
 ///
-/// Rates of bank and climb run straight over a step, also where a command jumps: a gyro that samples at the steps and is
-/// integrated as [`imu::Gyro`](crate::imu::Gyro) does gives the rotation back.
+/// The rates of bank and climb are linear over a step, even where a command jumps: a gyro sampled at the steps and
+/// integrated by [`imu::Gyro`](crate::imu::Gyro) reproduces the rotation.
 #[derive(Clone, Debug)]
 pub struct CoordinatedTurn {
     params: TurnParams,
@@ -73,7 +73,7 @@ impl CoordinatedTurn {
     /// A vehicle in level flight.
     ///
     /// # Errors
-    /// [`Error::Parameter`] as [`TurnParams::validate`] and [`Start::validate`].
+    /// [`Error::Parameter`] as in [`TurnParams::validate`] and [`Start::validate`].
     pub fn new(params: &TurnParams, start: &Start, wind: Wind) -> Result<Self> {
         params.validate()?;
         start.validate()?;
@@ -99,7 +99,7 @@ impl Vehicle for CoordinatedTurn {
         let flight = world_from_body(self.bank.angle_rad, self.climb.angle_rad, self.yaw_rad);
         let flight_from_body = DMat3::from_rotation_y(self.params.attack_rad);
         let yaw_rate = self.yaw_rate_rad_s(self.bank.angle_rad);
-        // The world's z axis in the frame that is banked; the climb turns about the axis that is not.
+        // The world's z axis in the banked frame; climb rotates about the axis that is not banked.
         let down = flight.transpose() * DVec3::Z;
         let (sin, cos) = self.bank.angle_rad.sin_cos();
         let rate = DVec3::X * self.bank.rate_rad_s
@@ -122,7 +122,8 @@ impl Vehicle for CoordinatedTurn {
         let (bank, climb) = (self.bank, self.climb);
         self.bank.follow(bank_rad, bank_lag_s, bank_rate_rad_s, step_s);
         self.climb.follow(climb_rad, climb_lag_s, f64::INFINITY, step_s);
-        // The rate of turn as a parabola over the step, integrated to its middle and to its end; the path by Simpson's rule.
+        // The turn rate as a parabola over the step, integrated to its middle and to its end; the path by Simpson's
+        // rule.
         let [a, b, c] =
             [0.0, 0.5, 1.0].map(|part| self.yaw_rate_rad_s(bank.toward(&self.bank, step_s, part)) * step_s);
         let start_rad = self.yaw_rad;
@@ -138,7 +139,7 @@ impl Vehicle for CoordinatedTurn {
     }
 }
 
-/// An angle that follows a command with a lag of the first order.
+/// An angle that follows a command with a first-order lag.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lag {
     angle_rad: f64,
@@ -146,8 +147,8 @@ struct Lag {
 }
 
 impl Lag {
-    /// The implicit trapezoid rule: the rate goes straight from the one before to that which the command asks for at the
-    /// end of the step.
+    /// The implicit trapezoidal rule: the rate is linear from the previous one to the one that the command requires
+    /// at the end of the step.
     fn follow(&mut self, command_rad: f64, lag_s: f64, limit_rad_s: f64, step_s: f64) {
         let off_rad = command_rad.clamp(-STEEPEST_RAD, STEEPEST_RAD) - self.angle_rad;
         let rate = (off_rad - self.rate_rad_s * step_s / 2.0) / (lag_s + step_s / 2.0);
@@ -156,7 +157,7 @@ impl Lag {
         self.rate_rad_s = rate;
     }
 
-    /// The angle at a part of the step towards what it is after it.
+    /// The angle at a fraction of the step towards `after`.
     fn toward(&self, after: &Self, step_s: f64, part: f64) -> f64 {
         self.angle_rad + (self.rate_rad_s + (after.rate_rad_s - self.rate_rad_s) * part / 2.0) * part * step_s
     }

@@ -5,14 +5,14 @@ use super::stream::{Stream, normal};
 use crate::error::Result;
 use crate::sim::Random;
 
-/// The strongest wind along an axis, steady or as a gust's standard deviation, m/s: more than a hurricane has.
+/// The strongest wind along an axis, steady or as a gust's standard deviation, m/s: above a hurricane's.
 pub const MAX_WIND_M_S: f64 = 100.0;
 
-/// Gusts on top of a steady wind: how strong, and over what length they change.
+/// Gusts on top of a steady wind: their strength, and the length over which they change.
 ///
-/// Each axis is noise of the first order, e^(−d/L) alike over a flown distance d: Dryden's spectrum along the flight in
-/// MIL-F-8785C (1980), σ² 2L/π / (1 + (LΩ)²), taken across and down too, where Dryden's is of the second order. Gusts are
-/// the same over the whole span: they push, and do not turn.
+/// Each axis is first-order noise with the correlation e^(−d/L) over a flown distance d: Dryden's spectrum along the
+/// flight in MIL-F-8785C (1980), σ² 2L/π / (1 + (LΩ)²), used across and down too, where Dryden's is of the second
+/// order. Gusts are uniform over the span: they exert forces and no moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Gusts {
@@ -23,10 +23,11 @@ pub struct Gusts {
 }
 
 impl Gusts {
-    /// Light turbulence at a height of 50 m, the lowest of table 4.1 of Beard & McLain, *Small Unmanned Aircraft* (2012).
+    /// Light turbulence at an altitude of 50 m, the lowest of table 4.1 of Beard & McLain, *Small Unmanned Aircraft*
+    /// (2012).
     pub const LIGHT: Self =
         Self { intensity_m_s: DVec3::new(1.06, 1.06, 0.7), length_m: DVec3::new(200.0, 200.0, 50.0) };
-    /// Moderate turbulence at a height of 50 m, from the same table.
+    /// Moderate turbulence at an altitude of 50 m, from the same table.
     pub const MODERATE: Self = Self { intensity_m_s: DVec3::new(2.12, 2.12, 1.4), ..Self::LIGHT };
 
     fn validate(&self) -> Result<()> {
@@ -47,11 +48,11 @@ pub struct Wind {
 }
 
 impl Wind {
-    /// A wind from the first gust on, which is drawn like all others. The steady part says where the air moves **to**,
-    /// m/s NED, each axis within ±[`MAX_WIND_M_S`]: a wind from the north is −x.
+    /// A wind with its first gust drawn like all others. The steady part is the air's velocity, where it moves
+    /// **to**, m/s NED, each axis within ±[`MAX_WIND_M_S`]: a wind from the north is −x.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range.
+    /// [`Error::Parameter`](crate::Error::Parameter) for values out of range.
     pub fn new(steady_ned_m_s: DVec3, gusts: Option<Gusts>, seed: u64) -> Result<Self> {
         for axis in steady_ned_m_s.to_array() {
             within("steady_ned_m_s", axis, -MAX_WIND_M_S, MAX_WIND_M_S)?;
@@ -70,12 +71,12 @@ impl Wind {
         Self { steady_ned_m_s: DVec3::ZERO, gusts: None, gust_ned_m_s: DVec3::ZERO, random: Random::new(0) }
     }
 
-    /// Where the air moves to now, m/s NED.
+    /// The air's velocity now, m/s NED.
     pub fn ned_m_s(&self) -> DVec3 {
         self.steady_ned_m_s + self.gust_ned_m_s
     }
 
-    /// Goes on to the gust after a flown distance in the air, metres. The step is exact for any distance.
+    /// Advances the gusts by a distance flown through the air, metres. Exact for any distance.
     pub fn advance(&mut self, distance_m: f64) {
         let Some(gusts) = &self.gusts else { return };
         let kept = (DVec3::splat(-distance_m.max(0.0)) / gusts.length_m).exp();

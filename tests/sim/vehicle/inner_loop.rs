@@ -1,4 +1,4 @@
-//! What the airframe does under its commands, against the figures of the prototype that it follows.
+//! The airframe's response to commands, compared with the prototype's figures.
 
 use viewsphere::sim::vehicle::{Airframe, AirframeParams, Autopilot, STEP_S, Vehicle, Wind};
 use viewsphere::steer::{Command, Response};
@@ -50,7 +50,7 @@ fn a_bank_is_taken_up_and_held() {
         // 0.04° and 0.13° once it is steady, and up to 2.3° while it rolls in.
         near("sideslip", sideslip_deg(last), 0.0, 0.15);
         assert!(states.iter().all(|state| sideslip_deg(state).abs() <= 2.5));
-        // The inner loop pulls what it takes: the speed is held.
+        // The inner loop sets the thrust it needs: the speed is held.
         assert!(states.iter().all(|state| (state.air_velocity_body_m_s.length() - 12.0).abs() <= 0.05));
     }
 }
@@ -74,7 +74,7 @@ fn left_is_right_mirrored() {
         *fly(plane.as_mut().unwrap(), &bank(degrees), 3.0).last().unwrap()
     });
     let mirrored = left.position_ned_m * DVec3::new(1.0, -1.0, 1.0);
-    // Rounding, through three seconds of a stable loop.
+    // Rounding, over three seconds of a stable loop.
     assert!((mirrored - right.position_ned_m).length() <= 1e-9, "{right:?} {left:?}");
 }
 
@@ -87,7 +87,7 @@ fn a_climb_and_a_speed_are_taken_up_and_held() {
         let path_deg = |state: &VehicleState| {
             (-state.velocity_ned_m_s.z / state.air_velocity_body_m_s.length()).asin().to_degrees()
         };
-        // 0.05°: the wing is told to carry what the thrust carries already.
+        // 0.05°: the wing is commanded to carry what the thrust already carries.
         near("climb", path_deg(states.last().unwrap()), climb_deg, 0.1);
         let reached = states.iter().position(|state| path_deg(state).abs() >= 0.632 * 8.0).unwrap();
         near("lag", (reached + 1) as f64 * STEP_S, 0.5, 0.15);
@@ -99,7 +99,7 @@ fn a_climb_and_a_speed_are_taken_up_and_held() {
     assert!(plane.set_speed_m_s(f64::NAN).is_err() && plane.set_speed_m_s(0.0).is_err());
 }
 
-/// A wing that has to carry twice the weight below √2 of the speed at which it stalls.
+/// Below √2 of the stall speed the wing cannot carry twice the weight.
 #[test]
 fn a_steep_turn_at_low_speed_stalls() {
     let params = AirframeParams::default();
@@ -115,7 +115,7 @@ fn a_steep_turn_at_low_speed_stalls() {
     // 36 m; 24 m if the stalled wing had no more drag than its lift induces.
     near("height lost", lost_m, 36.0, 3.0);
     assert!(steepest_deg > 20.0, "{steepest_deg}");
-    // Thrust helps to carry, so that a little above is enough.
+    // Thrust carries part of the weight, so a speed slightly above suffices.
     let (lost_m, steepest_deg) = lost(1.03 * stall_m_s);
     assert!(lost_m <= 4.0 && steepest_deg <= 11.0, "{lost_m} m, {steepest_deg}°");
 }
@@ -128,7 +128,7 @@ fn a_limit_of_the_angle_of_attack_keeps_the_wing_from_stalling() {
     let steepest_deg = states.iter().map(attack_deg).fold(0.0, f64::max);
     // The loop has a steady error of half a degree, well before the 15° of the stall.
     near("steepest", steepest_deg, 11.0, 0.7);
-    // It cannot carry twice its weight at 9 m/s all the same: it dives until it can.
+    // At 9 m/s it still cannot carry twice its weight: it dives until it can.
     near("height lost", 50.0 - height_m(states.last().unwrap()), 14.0, 3.0);
 }
 
@@ -152,7 +152,7 @@ fn a_command_that_is_not_finite_is_wings_level() {
     }
 }
 
-/// Whatever is asked for, and however long the steps are.
+/// For any command and any step.
 #[test]
 fn no_command_and_no_step_makes_a_state_that_is_not_finite() {
     let extremes = [1e300, -1e300, 3.2, -1.6, 0.0, f64::NAN];
@@ -199,8 +199,8 @@ fn off_deg(lag_s: f64, response: &Response) -> [f64; 2] {
     most
 }
 
-/// The arcs of steering have it so by default. Of a roll of 120° a twentieth is left, of the track as much as 0.5 m at the
-/// 8 m that it flies meanwhile.
+/// Steering's default prediction. Of a roll of 120° an error of a twentieth remains, of the track up to 0.5 m over
+/// the 8 m flown meanwhile.
 #[test]
 fn it_rolls_and_turns_as_steering_takes_it_to() {
     let response = Response::default();

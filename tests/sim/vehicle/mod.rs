@@ -1,4 +1,4 @@
-//! Vehicles against the textbook, the wind and the sensors against their statistics.
+//! Vehicles compared with the textbook, wind and sensors with their statistics.
 
 use glam::DVec3;
 use viewsphere::camera::roll_pitch_yaw_rad;
@@ -14,7 +14,7 @@ mod sensors;
 mod turn;
 mod wind;
 
-/// Fifty metres up, heading 40° from north.
+/// A start 50 m above the ground, heading 40° from north.
 fn start(speed_m_s: f64) -> Start {
     Start { position_ned_m: DVec3::new(3.0, -2.0, -50.0), yaw_rad: 0.7, speed_m_s }
 }
@@ -31,7 +31,7 @@ fn bank(degrees: f64) -> Command {
     Command { bank_rad: degrees.to_radians(), climb_rad: 0.0 }
 }
 
-/// The states after each step of a time.
+/// The states after each step of a flight.
 fn fly(vehicle: &mut dyn Vehicle, command: &Command, time_s: f64) -> Vec<VehicleState> {
     let step = |_| {
         vehicle.advance(command, STEP_S);
@@ -63,13 +63,13 @@ fn height_m(state: &VehicleState) -> f64 {
     -state.position_ned_m.z
 }
 
-/// How fast the path turns between two states at most a turn apart, rad/s: to the right is positive.
+/// The turn rate of the path between two states at most a turn apart, rad/s: positive to the right.
 fn turn_rate_rad_s(from: &VehicleState, to: &VehicleState) -> f64 {
     let heading = |state: &VehicleState| state.velocity_ned_m_s.y.atan2(state.velocity_ned_m_s.x);
     (heading(to) - heading(from)).rem_euclid(std::f64::consts::TAU) / (to.time_s - from.time_s)
 }
 
-/// When the bank first passes a share of its command, seconds after the first of the states.
+/// The time at which the bank first exceeds an angle, seconds after the first state.
 fn time_to(states: &[VehicleState], degrees: f64) -> f64 {
     states.iter().position(|state| bank_deg(state) >= degrees).map_or(f64::NAN, |i| (i + 1) as f64 * STEP_S)
 }

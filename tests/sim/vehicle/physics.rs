@@ -1,4 +1,4 @@
-//! The bare airframe: controls held, the inner loop off.
+//! The airframe alone: controls held, without the inner loop.
 
 use std::f64::consts::{PI, TAU};
 
@@ -35,7 +35,7 @@ fn in_trim_lift_is_weight_and_thrust_is_drag() {
             1e-9 + 1.2 * stalled * lift_n,
         );
         near("drag", trim.controls.thrust_n * cos, drag_n, 1e-9 + 4.0 * stalled * drag_n);
-        // And it stays there, up to rounding: ten seconds straight on.
+        // And it stays trimmed, up to rounding: ten seconds straight on.
         let mut plane = airframe(speed_m_s, Wind::calm());
         let begin = plane.state();
         for _ in 0..2400 {
@@ -76,7 +76,7 @@ fn between_the_lowest_and_the_highest_speed_it_flies_level_and_nowhere_else() {
     let message = params.trim(30.0).unwrap_err().to_string();
     let shown = format!("{} to {} m/s", (10.0 * low).ceil() / 10.0, (10.0 * high).floor() / 10.0);
     assert_eq!(message, format!("speed_m_s is 30, expected {shown} to fly level"));
-    // As the help of fly, campaign and simulate says.
+    // As documented in the help of fly, campaign and simulate.
     assert_eq!(shown, "7.7 to 25 m/s");
 }
 
@@ -100,7 +100,7 @@ fn phugoid_s(params: &AirframeParams, speed_m_s: f64) -> f64 {
     (crests[4] - crests[1]) / 3.0
 }
 
-/// Lanchester (1908): a point that keeps its angle of attack swings in π√2 V/g.
+/// Lanchester (1908): a point at constant angle of attack oscillates with the period π√2 V/g.
 #[test]
 fn a_stiff_airframe_swings_in_lanchesters_period() {
     let params = AirframeParams {
@@ -110,7 +110,7 @@ fn a_stiff_airframe_swings_in_lanchesters_period() {
         ..AirframeParams::default()
     };
     let lanchester_s = PI * 2_f64.sqrt() * 12.0 / GRAVITY_M_S2;
-    // Of the damping ζ = D/(√2 L) = 0.08 the period grows by 0.3 %; pitch damping adds 1.1 %.
+    // The damping ζ = D/(√2 L) = 0.08 lengthens the period by 0.3 %; pitch damping adds 1.1 %.
     near("period", phugoid_s(&params, 12.0), lanchester_s, 0.02 * lanchester_s);
 }
 
@@ -137,8 +137,8 @@ fn the_airframe_swings_in_the_phugoids_period() {
     }
 }
 
-/// ½v² + gh: the air only ever takes, whatever the attitude. Rotation has an energy of its own, which the model's static
-/// moments neither take from the path nor give to it.
+/// ½v² + gh: the air only ever takes energy, in any attitude. Rotation has an energy of its own, which the model's
+/// static moments exchange with the path in neither direction.
 #[test]
 fn without_thrust_energy_falls_at_every_step() {
     let energy =
@@ -165,7 +165,7 @@ fn the_integration_is_of_the_fourth_order() {
     let flown = |steps: u32| {
         let mut plane = airframe(12.0, Wind::calm());
         let thrust_n = 1.5;
-        // Torques change at half a second and a second, which every one of the steps meets.
+        // Torques change at 0.5 s and at 1 s, which all step sizes meet exactly.
         for step in 0..steps {
             let torque_body_n_m = match 4 * step / steps {
                 0 => DVec3::new(0.3, 0.2, 0.05),
@@ -178,11 +178,11 @@ fn the_integration_is_of_the_fourth_order() {
     };
     let exact = flown(4096);
     let [a, b, c] = [128, 256, 512].map(|steps| (flown(steps) - exact).length());
-    // The ratio comes down to 16 from above: 18.2, then 17.1.
+    // The ratio approaches 16 from above: 18.2, then 17.1.
     assert!((15.0..19.0).contains(&(a / b)) && (15.0..18.0).contains(&(b / c)), "{a} {b} {c}");
 }
 
-/// The whole loop, whose torques are held over a step: a doublet of 60°, two seconds each.
+/// The whole loop, with torques held over a step: a doublet of 60°, two seconds each.
 #[test]
 fn eight_steps_a_frame_are_enough() {
     let flown = |steps: u32| {

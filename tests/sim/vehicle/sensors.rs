@@ -1,4 +1,4 @@
-//! What is measured on board, against what is so.
+//! On-board measurements, compared with the true state.
 
 use glam::{DMat3, DQuat};
 use viewsphere::camera::FRD_FROM_CAMERA;
@@ -9,7 +9,7 @@ use viewsphere::sim::vehicle::{
 
 use super::*;
 
-/// A gyro that has come along on a slalom, and the states after each step.
+/// A gyro after a slalom, and the states after each step.
 fn flight(vehicle: &mut dyn Vehicle, errors: &GyroErrors, seed: u64) -> (Gyro, Vec<VehicleState>) {
     let mut gyro =
         Gyro::new(GyroConfig { camera_from_gyro: FRD_FROM_CAMERA.transpose(), ..GyroConfig::default() })
@@ -25,7 +25,8 @@ fn flight(vehicle: &mut dyn Vehicle, errors: &GyroErrors, seed: u64) -> (Gyro, V
     (gyro, states)
 }
 
-/// How far the gyro is off the camera's true rotation between two states, a rotation vector in radians.
+/// The error of the gyro's rotation between two states, compared with the camera's true one: a rotation vector in
+/// radians.
 fn error_rad(gyro: &Gyro, from: &VehicleState, to: &VehicleState) -> DVec3 {
     let measured = gyro.prev_from_cur(from.time_s, to.time_s).unwrap();
     let truth: DMat3 = from.camera_pose().world_from_camera.transpose() * to.camera_pose().world_from_camera;
@@ -37,7 +38,7 @@ fn a_gyro_without_errors_gives_the_rotation_back() {
     let (gyro, states) = flight(&mut airframe(12.0, Wind::calm()), &GyroErrors::NONE, 0);
     for pair in states.windows(9).step_by(8) {
         let error = error_rad(&gyro, &pair[0], &pair[8]).length();
-        // Straight between samples: h² T/12 of the rates' second derivative, some 300 rad/s³ where commands change.
+        // Linear between samples: h² T/12 of the rates' second derivative, some 300 rad/s³ where commands change.
         assert!(error <= 2e-5, "{error} rad at {} s", pair[0].time_s);
     }
     let (gyro, states) = flight(&mut turner(12.0, Wind::calm()), &GyroErrors::NONE, 0);
@@ -61,11 +62,11 @@ fn noise_adds_up_as_its_density_says() {
             frames += 3.0;
         }
     }
-    // √T of the density, and variances within five standard deviations of theirs.
+    // The density times √T, and variances within five standard deviations of theirs.
     let density = 3.4e-4_f64;
     let flight_variance = of_flights / (flights / 3.0) / (density * density * 12.0);
     near("flight", flight_variance, 1.0, 5.0 * (2.0_f64 / flights).sqrt());
-    // The samples at both ends of a frame count for half each, so that seven and two halves make 7.5 of eight.
+    // The samples at both ends of a frame count half each, so that seven and two halves make 7.5 of eight.
     let frame_variance = of_frames / (frames / 3.0) / (density * density / 30.0);
     near("frame", frame_variance, 7.5 / 8.0, 5.0 * (2.0_f64 / frames).sqrt());
 }
@@ -110,7 +111,7 @@ fn the_bias_walks() {
         }
         square += (gyro.sample(&state).gyro_rad_s - first).length_squared();
     }
-    // √T of the density after ten seconds; each axis tells of its own.
+    // The density times √T after ten seconds; the axes are independent.
     let variance = square / (3.0 * count as f64) / (3.9e-5_f64.powi(2) * 10.0);
     near("variance", variance, 1.0, 5.0 * (2.0 / (3.0 * count as f64)).sqrt());
 }
@@ -128,7 +129,7 @@ fn airspeed_is_wrong_by_the_same_share_all_the_way() {
         .collect();
     assert!(shares.iter().all(|share| share.abs() <= 0.03));
     let n = shares.len() as f64;
-    // Even over ±3 %: a deviation of 3 %/√3.
+    // Uniform over ±3 %: a standard deviation of 3 %/√3.
     near("mean", shares.iter().sum::<f64>() / n, 0.0, 5.0 * 0.03 / (3.0 * n).sqrt());
     assert!(shares.iter().any(|share| *share > 0.028) && shares.iter().any(|share| *share < -0.028));
     assert!(AirspeedModel::new(-0.1, 0).is_err() && AirspeedModel::new(f64::NAN, 0).is_err());

@@ -30,7 +30,7 @@ fn bank_and_climb_lag_behind_their_commands() {
     let states = fly(&mut turner(12.0, Wind::calm()), &command, 2.0);
     for state in states.iter().skip(10) {
         let passed = |lag_s: f64| 1.0 - (-(state.time_s - STEP_S / 2.0) / lag_s).exp();
-        // The rate takes a step to come up, and counts for half of it.
+        // The rate takes a step to build up, and counts for half of it.
         near("bank", bank_deg(state), 10.0 * passed(0.2), 0.01);
         let climb_rad = (-state.velocity_ned_m_s.z / 12.0).asin();
         near("climb", climb_rad, 0.1 * passed(0.4), 1e-4);
@@ -42,7 +42,7 @@ fn bank_and_climb_lag_behind_their_commands() {
     near("roll rate", fastest, 150_f64.to_radians(), 1e-9);
 }
 
-/// The stated rates turn one attitude into the next, and the stated velocity one place into the next.
+/// The stated rates rotate one attitude into the next, and the stated velocity moves one position to the next.
 #[test]
 fn rates_and_velocities_are_those_of_the_motion() {
     let params = TurnParams { attack_rad: 0.07, ..TurnParams::default() };
@@ -54,8 +54,8 @@ fn rates_and_velocities_are_those_of_the_motion() {
         let mean_rad_s = (before.rate_body_rad_s + after.rate_body_rad_s) / 2.0;
         let turn = before.world_from_body.transpose() * after.world_from_body;
         let turned = glam::DQuat::from_scaled_axis(mean_rad_s * STEP_S);
-        // Where a command jumps, the climb's rate changes by 0.7 rad/s within a step while the bank turns by 0.01: of that
-        // the straight line misses a third over h.
+        // Where a command jumps, the climb's rate changes by 0.7 rad/s within a step while the bank rotates by 0.01:
+        // linear interpolation misses a third of that over h.
         assert!(turn.abs_diff_eq(glam::DMat3::from_quat(turned), 1e-5), "at {} s", before.time_s);
         // The trapezoid's h³/12 of the velocity's second derivative, which is V times 170 rad/s² of the climb's jump.
         let moved = (before.velocity_ned_m_s + after.velocity_ned_m_s) / 2.0 * STEP_S;
@@ -81,7 +81,7 @@ fn the_position_converges() {
     assert!((eight - fine).length() <= 0.02, "{eight} {fine}");
 }
 
-/// While the bank grows at its limit the law has no step in it: one long step flies what eight short ones do.
+/// While the bank grows at its limit the law is smooth: one long step equals eight short ones.
 #[test]
 fn a_long_step_is_as_good_as_eight_short_ones() {
     let mut short = turner(12.0, Wind::calm());

@@ -6,7 +6,7 @@ use super::*;
 
 const AWAY: DVec3 = DVec3::new(4.0, -3.0, 0.0);
 
-/// In a steady wind the flight is the one in calm air, carried along.
+/// A flight in a steady wind is the one in calm air, carried along.
 #[test]
 fn a_steady_wind_carries_the_flight_along() {
     let blown = |wind: DVec3| -> [Vec<VehicleState>; 2] {
@@ -24,7 +24,8 @@ fn a_steady_wind_carries_the_flight_along() {
     }
 }
 
-/// The climb of the airframe is over ground, as a barometer shows it; that of the coordinated turn is in the air.
+/// The airframe's climb is relative to the ground, as a barometer measures it; the coordinated turn's is relative to
+/// the air.
 #[test]
 fn an_updraught_lifts_the_point_and_not_the_airframe() {
     let up = || Wind::new(DVec3::new(0.0, 0.0, -1.0), None, 0).unwrap();
@@ -53,7 +54,7 @@ fn gusts_have_their_deviation_and_their_length() {
     let apart = drawn.iter().map(|gust| gust.x * gust.y).sum::<f64>() / n;
     for axis in 0..3 {
         let alike = (-step_m / gusts.length_m[axis]).exp();
-        // Neighbours are alike: so many of the draws tell of something new, for the mean and for squares.
+        // Neighbouring draws correlate: the number of independent ones, for the mean and for squares.
         let fresh = n * (1.0 - alike) / (1.0 + alike);
         let fresh_squares = n * (1.0 - alike * alike) / (1.0 + alike * alike);
         // Five standard deviations of each estimate.
@@ -65,7 +66,7 @@ fn gusts_have_their_deviation_and_their_length() {
     near("north with east", apart, 0.0, 5.0 / (n * (1.0 - alike * alike) / (1.0 + alike * alike)).sqrt());
 }
 
-/// The step of a gust does not matter to its statistics: many small ones are one large one.
+/// The step does not affect a gust's statistics: many small steps equal one large one.
 #[test]
 fn many_small_steps_are_alike_as_one_large_one() {
     let gusts = Gusts { intensity_m_s: DVec3::ONE, length_m: DVec3::splat(50.0) };
@@ -91,7 +92,7 @@ fn a_seed_is_a_wind_and_another_seed_another() {
     assert!((flown(1).position_ned_m - flown(2).position_ned_m).length() > 0.1);
 }
 
-/// Gusts change along the way through the air.
+/// Gusts change with the distance flown through the air.
 #[test]
 fn both_vehicles_meet_the_gusts_of_their_way() {
     let wind = Wind::new(AWAY, Some(Gusts::MODERATE), 5).unwrap();
@@ -111,7 +112,7 @@ fn both_vehicles_meet_the_gusts_of_their_way() {
     }
 }
 
-/// A minute of slalom in moderate gusts: the loop holds.
+/// A minute of slalom in moderate gusts: the loop stays stable.
 #[test]
 fn the_airframe_flies_in_gusts() {
     for seed in 0..4 {
