@@ -41,9 +41,14 @@ impl BackendArgs {
     }
 
     /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
-    /// counts for more than speed.
-    pub(super) fn open_for_shaders(&self) -> Result<Backend> {
-        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() }, false)
+    /// counts for more than speed. Says nothing if `quiet`.
+    pub(super) fn open_for_shaders(&self, quiet: bool) -> Result<Backend> {
+        self.open_with(&GpuOptions { allow_software: true, ..GpuOptions::default() }, quiet)
+    }
+
+    /// Whether nothing to compute on was named.
+    pub(super) fn is_free(&self) -> bool {
+        self.backend.is_none() && self.adapter.is_none()
     }
 
     /// Two of the same kind, on devices of their own: what happens to one does not happen to the other.

@@ -3,6 +3,7 @@
 mod campaign;
 mod canvas;
 mod colours;
+mod demo;
 mod divergence;
 pub mod flight;
 mod font;
@@ -13,6 +14,9 @@ mod plot;
 mod straight;
 
 pub use campaign::{CampaignRow, campaign_page};
+pub use demo::{DemoFlight, DemoPair, DemoReport};
+#[cfg(feature = "cli")]
+pub(crate) use demo::GENERATOR;
 pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
 #[cfg(feature = "cli")]
 pub(crate) use html::counted;

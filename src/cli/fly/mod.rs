@@ -4,7 +4,7 @@ mod cues;
 mod log;
 mod measured;
 pub(super) mod setup;
-mod timing;
+pub(super) mod timing;
 mod video;
 
 use std::fs::{self, File};

@@ -170,7 +170,7 @@ fn sensor(sensor: Sensor) -> &'static str {
 }
 
 /// The value that this share of all lie below; none of none.
-pub(super) fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
+pub(in crate::report) fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(((values.len().max(1) - 1) as f64 * share).round() as usize).copied()
 }

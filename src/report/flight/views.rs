@@ -1,0 +1,135 @@
+//! What there is to see of a frame, in parts: for a video, and for the player of a page.
+
+use glam::{DMat3, DVec3};
+
+use super::danger;
+use super::map::Map;
+use crate::camera::{Camera, FRD_FROM_CAMERA, Pose, world_from_body};
+use crate::error::Result;
+use crate::frame::{Image, PixelFormat, Size};
+use crate::report::Overlay;
+use crate::report::canvas::Canvas;
+use crate::report::colours::{ARC, DIM};
+use crate::report::straight::Straight;
+use crate::sim::flight::{Flight, Record, Seen};
+use crate::sim::{RayTable, World, render};
+
+/// Half the width of the ribbon along the arc that was chosen, and how far below the vehicle it lies, metres.
+const RIBBON_M: f64 = 0.6;
+const BELOW_M: f64 = 1.0;
+
+/// Draws the camera's picture, the danger in the directions around, and a map.
+#[derive(Debug)]
+pub(super) struct Views {
+    ideal: Camera,
+    overlay: Overlay,
+    straight: Straight,
+    scenery: Scenery,
+    /// The picture in the ideal camera's size, where there is no cue to draw over it.
+    plain: Image,
+    map: Map,
+}
+
+/// What a camera would see.
+#[derive(Debug)]
+struct Scenery {
+    world: World,
+    rays: Option<RayTable>,
+}
+
+impl Views {
+    /// Of a flight from its beginning.
+    pub(super) fn new(flight: &Flight) -> Result<Self> {
+        let (raw, ideal) = (&flight.config().camera, *flight.ideal());
+        Ok(Self {
+            overlay: Overlay::new(raw, &ideal)?,
+            straight: Straight::new(raw, &ideal),
+            scenery: Scenery { world: flight.course().world.clone(), rays: None },
+            plain: blank(ideal.size),
+            map: Map::new(flight.course()),
+            ideal,
+        })
+    }
+
+    /// Width and height of the camera's picture.
+    pub(super) fn picture_size(&self) -> Size {
+        self.ideal.size
+    }
+
+    /// What the camera sees, with what the pipeline makes of it over it.
+    pub(super) fn picture(&mut self, seen: &Seen<'_>) -> Result<&Image> {
+        match (seen.image, seen.cue) {
+            (Some(image), Some(cue)) => return self.overlay.draw(&image.frame()?, cue),
+            (Some(image), None) => self.straight.draw(&image.frame()?, &mut self.plain)?,
+            (None, _) => self.scenery.draw(&self.ideal, seen.record, &mut self.plain)?,
+        }
+        Ok(&self.plain)
+    }
+
+    /// The horizon, and the arc that was chosen as a ribbon below the vehicle, over a picture each of whose pixels is drawn
+    /// `scale` pixels wide.
+    pub(super) fn attitude(&self, canvas: &mut Canvas<'_>, scale: f64, seen: &Seen<'_>) {
+        let camera_from_world = world_from_camera(seen.record).transpose();
+        let place = |off_ned: DVec3| {
+            let place = self.ideal.project(camera_from_world * off_ned)?;
+            Some(place.map(|c| scale * (c + 0.5)))
+        };
+        let yaw_rad = seen.record.roll_pitch_yaw_rad[2];
+        let horizon = [-20, 20].map(|i| {
+            let (sin, cos) = (yaw_rad + 0.05 * f64::from(i)).sin_cos();
+            place(DVec3::new(cos, sin, 0.0))
+        });
+        if let [Some(left), Some(right)] = horizon {
+            canvas.stroke(&[left, right], 1.0, DIM);
+        }
+        let Some(arc) = seen.steering.arc() else { return };
+        let mut before: Option<[[f64; 2]; 2]> = None;
+        for ends in arc.path_ned_m.windows(2) {
+            let aside = RIBBON_M * (ends[1] - ends[0]).cross(DVec3::NEG_Z).normalize_or_zero();
+            let sides = [-aside, aside].map(|aside| place(ends[1] + aside + BELOW_M * DVec3::Z));
+            if let [Some(left), Some(right)] = sides {
+                if let Some([left_before, right_before]) = before {
+                    canvas.polygon(&[left_before, left, right, right_before], ARC, 0.35);
+                }
+                canvas.stroke(&[left, right], 1.5, ARC);
+                before = Some([left, right]);
+            }
+        }
+    }
+
+    /// The danger in the directions around.
+    pub(super) fn danger(&self, canvas: &mut Canvas<'_>, seen: &Seen<'_>) {
+        danger::draw(canvas, seen);
+    }
+
+    /// What is around, from above, and the way through the frames whose map has been drawn.
+    pub(super) fn map(&mut self, canvas: &mut Canvas<'_>, seen: &Seen<'_>) {
+        self.map.draw(canvas, seen);
+    }
+}
+
+impl Scenery {
+    fn draw(&mut self, ideal: &Camera, record: &Record, image: &mut Image) -> Result<()> {
+        let rays = match &mut self.rays {
+            Some(rays) => rays,
+            none => none.insert(RayTable::new(ideal)?),
+        };
+        let pose =
+            Pose { position_world: record.position_ned_m, world_from_camera: world_from_camera(record) };
+        let gray = render(&self.world, rays, &pose).image;
+        for (pixel, gray) in image.data.as_chunks_mut::<3>().0.iter_mut().zip(gray.data) {
+            *pixel = [gray; 3];
+        }
+        Ok(())
+    }
+}
+
+fn world_from_camera(record: &Record) -> DMat3 {
+    let [roll, pitch, yaw] = record.roll_pitch_yaw_rad;
+    world_from_body(roll, pitch, yaw) * FRD_FROM_CAMERA
+}
+
+/// A black picture to draw on.
+pub(super) fn blank(size: Size) -> Image {
+    Image { size, format: PixelFormat::Rgb8, data: vec![0; 3 * size.pixels()] }
+}
