@@ -14,9 +14,9 @@ mod plot;
 mod straight;
 
 pub use campaign::{CampaignRow, campaign_page};
-pub use demo::{DemoFlight, DemoPair, DemoReport};
 #[cfg(feature = "cli")]
 pub(crate) use demo::GENERATOR;
+pub use demo::{DemoFlight, DemoPair, DemoReport};
 pub use divergence::{FULL_DIVERGENCE_HZ, divergence_strip, diverging};
 #[cfg(feature = "cli")]
 pub(crate) use html::counted;

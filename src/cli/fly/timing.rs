@@ -72,8 +72,11 @@ impl Costs {
 impl Timing {
     /// What the parts take, in the median.
     pub(in crate::cli) fn parts(&self) -> String {
-        let [sight, pipeline, steer] = [self.sight_ms, self.pipeline_ms, self.steer_ms].map(|part| part.median);
-        format!("{sight:.2} ms to render a picture, {pipeline:.2} ms from it to sectors, {steer:.2} ms to a command")
+        let [sight, pipeline, steer] =
+            [self.sight_ms, self.pipeline_ms, self.steer_ms].map(|part| part.median);
+        format!(
+            "{sight:.2} ms to render a picture, {pipeline:.2} ms from it to sectors, {steer:.2} ms to a command"
+        )
     }
 
     /// What is said of it beside the summary.

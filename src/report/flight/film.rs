@@ -1,42 +1,55 @@
-//! A flight frame by frame, as pictures for a page.
+//! A flight frame by frame, for a page that plays it.
 
-use super::views::{Views, blank};
+use glam::DVec2;
+
+use super::map::Ground;
+use super::views::Views;
 use crate::error::{Error, Result};
-use crate::frame::{Image, Size, picture};
-use crate::report::canvas::Canvas;
+use crate::frame::{Size, picture};
+use crate::report::colours::TIMES;
+use crate::report::overlay::Layers;
 use crate::sim::flight::{Flight, Record, Seen};
 
-/// Size of the picture of the danger in the directions around, and of the map.
-pub(super) const DANGER: Size = Size::new(480, 156);
-pub(super) const MAP: Size = Size::new(390, 640);
-/// Quality of the camera's pictures: enough to see the texture and the sectors' frames.
-const QUALITY: u8 = 72;
+/// Quality of the camera's pictures.
+const QUALITY: u8 = 62;
 
-/// Pictures of a flight's frames: what the camera sees with what the pipeline makes of it, the danger in the directions
-/// around, and a map with the way flown and the arc that was chosen.
+/// What a page shows of a flight's frames: the camera's picture with the flow, the same with the sectors, and what it takes
+/// to draw the arc that was chosen and a map.
 ///
-/// As [`FlightVideo`](super::FlightVideo), but compressed, and with its parts by themselves, so that a page can lay them out.
-/// A frame takes some 30 kB.
+/// As [`FlightVideo`](super::FlightVideo), but compressed and in parts, so that the page can lay them out; a frame takes some
+/// 30 kB.
 #[derive(Debug)]
 pub struct FlightFilm {
     views: Views,
-    every: u64,
-    camera: Image,
-    danger: Image,
-    map: Image,
-    stills: Vec<Still>,
+    pub(super) ground: Ground,
+    /// From one of the frames to the next, in frames of the flight.
+    pub(super) every: u64,
+    pub(super) stills: Vec<Still>,
 }
 
 /// A frame that was drawn.
 #[derive(Debug)]
 pub(super) struct Still {
     pub(super) record: Record,
-    /// JPEG.
-    pub(super) camera: Vec<u8>,
-    /// PNG.
-    pub(super) danger: Vec<u8>,
-    /// PNG.
-    pub(super) map: Vec<u8>,
+    /// What the camera sees with the flow over it, JPEG.
+    pub(super) flow: Vec<u8>,
+    /// The same with the sectors, JPEG.
+    pub(super) sectors: Vec<u8>,
+    /// Both sides of the arc that was chosen, in pixels of the picture.
+    pub(super) ribbon: Vec<[[f64; 2]; 2]>,
+    /// The arc from above, from the vehicle along north and east, metres.
+    pub(super) arc_m: Vec<DVec2>,
+    pub(super) obstacles: Vec<Ring>,
+}
+
+/// What the steering takes for an obstacle.
+#[derive(Debug)]
+pub(super) struct Ring {
+    /// From the vehicle along north and east, metres.
+    pub(super) off_m: DVec2,
+    pub(super) radius_m: f64,
+    /// Which of [`TIMES`] it is met within; their number if later.
+    pub(super) time: usize,
 }
 
 impl FlightFilm {
@@ -48,9 +61,8 @@ impl FlightFilm {
         if every == 0 {
             return Err(Error::parameter("every", every, "1 or above"));
         }
-        let views = Views::new(flight)?;
-        let camera = blank(views.picture_size());
-        Ok(Self { views, every, camera, danger: blank(DANGER), map: blank(MAP), stills: Vec::new() })
+        let ground = Ground::new(flight.course());
+        Ok(Self { views: Views::new(flight)?, ground, every, stills: Vec::new() })
     }
 
     /// Draws a frame, if it is one of those that are drawn.
@@ -61,36 +73,29 @@ impl FlightFilm {
         if !seen.record.frame.is_multiple_of(self.every) {
             return Ok(());
         }
-        let Self { views, camera, danger, map, .. } = self;
-        camera.data.copy_from_slice(&views.picture(seen)?.data);
-        views.attitude(&mut all(camera), 1.0, seen);
-        views.danger(&mut all(danger), seen);
-        views.map(&mut all(map), seen);
+        let views = &mut self.views;
+        let mut jpeg = |layers| picture::encode_jpeg(views.layers(seen, layers)?, QUALITY);
+        let [flow, sectors] = [jpeg(Layers::Flow)?, jpeg(Layers::Sectors)?];
+        let speed_m_s = seen.record.airspeed_m_s.max(0.1);
+        let obstacles = seen.steering.obstacles().iter().map(|obstacle| {
+            let time_s = obstacle.place_ned_m.length() / speed_m_s;
+            let time = TIMES.iter().position(|(limit, _)| time_s < *limit).unwrap_or(TIMES.len());
+            Ring { off_m: obstacle.place_ned_m.truncate(), radius_m: obstacle.radius_m, time }
+        });
+        let arc = seen.steering.arc();
         self.stills.push(Still {
             record: seen.record.clone(),
-            camera: picture::encode_jpeg(camera, QUALITY)?,
-            danger: picture::encode_png(danger)?,
-            map: picture::encode_png(map)?,
+            flow,
+            sectors,
+            ribbon: views.ribbon(seen),
+            arc_m: arc.map_or(Vec::new(), |arc| arc.path_ned_m.map(|place| place.truncate()).to_vec()),
+            obstacles: obstacles.collect(),
         });
         Ok(())
     }
 
     /// Width and height of the camera's pictures.
-    pub(super) fn camera_size(&self) -> Size {
-        self.camera.size
+    pub(super) fn picture_size(&self) -> Size {
+        self.views.picture_size()
     }
-
-    /// The frames that were drawn.
-    pub(super) fn stills(&self) -> &[Still] {
-        &self.stills
-    }
-
-    /// From one of them to the next, in frames of the flight.
-    pub(super) fn every(&self) -> u64 {
-        self.every
-    }
-}
-
-fn all(image: &mut Image) -> Canvas<'_> {
-    Canvas::new(image, [0, 0], [usize::MAX; 2])
 }

@@ -6,6 +6,7 @@ mod film;
 mod map;
 pub(super) mod page;
 pub(super) mod player;
+mod script;
 mod video;
 mod views;
 mod way;

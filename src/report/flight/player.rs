@@ -1,10 +1,10 @@
 //! A film of a flight that is played in a page.
 
-use super::film::{DANGER, FlightFilm, MAP, Still};
+use super::film::{FlightFilm, Still};
+use super::script::json;
 use crate::frame::Size;
 use crate::report::colours::{LATER, TIMES};
 use crate::report::html::{data_uri, escape};
-use crate::sim::flight::FRAME_S;
 
 /// What plays it: an element for a page's head.
 pub(in crate::report) fn script() -> String {
@@ -13,55 +13,51 @@ pub(in crate::report) fn script() -> String {
 
 /// The player and its pictures. A page can hold one.
 pub(in crate::report) fn player(film: &FlightFilm) -> String {
-    let stills = film.stills();
+    let stills = &film.stills;
     let shown = interesting(stills);
     let Some(still) = stills.get(shown) else { return "<p>No frame was drawn.</p>\n".to_owned() };
-    let screen = |id: &str, size: Size, uri: String, alt: &str, caption: &str| {
+    let Size { width, height } = film.picture_size();
+    let screen = |id: &str, jpeg: &[u8], over: &str, alt: &str, caption: &str| {
+        let uri = data_uri("image/jpeg", jpeg);
         format!(
-            "<figure class=\"{id}\"><img id=\"{id}\" src=\"{uri}\" width=\"{}\" height=\"{}\" decoding=\"sync\" alt=\"{}\"/>\
-             <figcaption>{caption}</figcaption></figure>\n",
-            size.width,
-            size.height,
-            escape(alt),
+            "<figure class=\"{id}\"><div class=\"screen\"><img id=\"{id}\" src=\"{uri}\" width=\"{width}\" \
+             height=\"{height}\" decoding=\"sync\" alt=\"{alt}\"/>{over}</div>\
+             <figcaption>{caption}</figcaption></figure>\n"
         )
     };
-    let camera = screen(
-        "camera",
-        film.camera_size(),
-        data_uri("image/jpeg", &still.camera),
-        "The camera's picture in gray, coloured by its flow, with frames around the sectors and the chosen arc as a ribbon",
-        "What the camera sees. Colours: the flow, by direction. Small frames: sectors, by time to contact. Cross: the direction \
-         of motion. Ribbon: the arc that was chosen.",
+    let flow = screen(
+        "flow",
+        &still.flow,
+        "",
+        "The camera's picture in gray, coloured by its flow",
+        "What the camera sees, and its flow: the colour is the direction, its strength the length.",
     );
-    let danger = screen(
-        "danger",
-        DANGER,
-        data_uri("image/png", &still.danger),
-        "The directions around, level with the horizon, coloured by time to contact, with the chosen arc as a line",
-        "The directions that steering decides on, level with the horizon, by time to contact. Line: the chosen arc.",
+    let sectors = screen(
+        "sectors",
+        &still.sectors,
+        "<canvas></canvas>",
+        "The camera's picture in gray, its sectors coloured by time to contact, with the chosen arc as a ribbon",
+        "Its sectors, by time to contact. Cross: the direction of motion. Box: what is met first. Ribbon: the arc that was \
+         chosen.",
     );
-    let map = screen(
-        "map",
-        MAP,
-        data_uri("image/png", &still.map),
-        "A map of the surroundings with obstacles, the way flown and the chosen arc",
-        "From above, the goal is up. Gray: what is there. Rings: what steering takes for obstacles. Blue: the way flown. \
-         Turquoise: the chosen arc.",
-    );
+    let map = "<figure class=\"map\"><div class=\"screen\"><canvas id=\"map\" role=\"img\" aria-label=\"A map of the surroundings with obstacles, the \
+               way flown and the chosen arc\"></canvas></div><figcaption>From above, the goal is up. Gray: what is there. Rings: what \
+               the steering takes for obstacles, by time to contact. Blue: the way flown. Turquoise: the chosen arc.\
+               </figcaption></figure>\n";
     let last = stills.len() - 1;
     format!(
-        "<div class=\"player\">\n{camera}{danger}{map}</div>\n\
-         <div class=\"controls\"><button type=\"button\" id=\"play\">Play</button>\
+        "<div class=\"controls\"><button type=\"button\" id=\"play\">Play</button>\
          <input type=\"range\" id=\"seek\" min=\"0\" max=\"{last}\" value=\"{shown}\" aria-label=\"Frame of the flight\"/>\
          <output id=\"clock\">{:.1} s</output></div>\n\
-         <div class=\"tiles\" id=\"readout\">\n{}</div>\n{}\
+         <div class=\"player\">\n{flow}{sectors}{map}</div>\n{}\
+         <div class=\"tiles\" id=\"readout\">\n{}</div>\n\
          <p>Space plays and stops, the arrow keys go frame by frame.</p>\n\
-         <noscript><p>Without scripts the page shows this frame alone.</p></noscript>\n\
+         <noscript><p>Without scripts the page shows this frame alone, and no map.</p></noscript>\n\
          <script type=\"application/json\" id=\"film\">{}</script>\n",
         still.record.time_s,
-        readout(still),
         legend(),
-        json(film, shown),
+        readout(still),
+        json(film, shown, |still| texts(still).to_vec()),
     )
 }
 
@@ -75,7 +71,7 @@ fn interesting(stills: &[Still]) -> usize {
     found.map_or(0, |(at, _)| at)
 }
 
-/// The figures of a frame, in the order in which [`json`] has them.
+/// The figures of a frame, in the order in which the script has them.
 const FIGURES: [&str; 5] =
     ["contact ahead", "true contact", "bank flown", "bank and climb of the arc", "clearance"];
 
@@ -113,20 +109,4 @@ fn legend() -> String {
     let near = TIMES.iter().map(|(limit, colour)| key(*colour, format!("within {limit} s")));
     let later = key(LATER, "later".to_owned());
     format!("<ul class=\"keys\" aria-label=\"Time to contact\">\n{}{later}</ul>\n", near.collect::<String>())
-}
-
-/// All pictures and figures. Nothing in it has to be escaped.
-fn json(film: &FlightFilm, shown: usize) -> String {
-    let list = |items: Vec<String>| format!("[{}]", items.join(","));
-    let each = |of: &dyn Fn(&Still) -> String| list(film.stills().iter().map(of).collect());
-    let quoted = |text: String| format!("\"{text}\"");
-    format!(
-        "{{\"shown\":{shown},\"interval\":{},\n\"time\":{},\n\"text\":{},\n\"camera\":{},\n\"danger\":{},\n\"map\":{}}}",
-        film.every() as f64 * FRAME_S,
-        each(&|still| format!("{:.3}", still.record.time_s)),
-        each(&|still| list(texts(still).map(quoted).to_vec())),
-        each(&|still| quoted(data_uri("image/jpeg", &still.camera))),
-        each(&|still| quoted(data_uri("image/png", &still.danger))),
-        each(&|still| quoted(data_uri("image/png", &still.map))),
-    )
 }

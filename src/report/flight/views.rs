@@ -7,9 +7,9 @@ use super::map::Map;
 use crate::camera::{Camera, FRD_FROM_CAMERA, Pose, world_from_body};
 use crate::error::Result;
 use crate::frame::{Image, PixelFormat, Size};
-use crate::report::Overlay;
 use crate::report::canvas::Canvas;
 use crate::report::colours::{ARC, DIM};
+use crate::report::overlay::{Layers, Overlay};
 use crate::report::straight::Straight;
 use crate::sim::flight::{Flight, Record, Seen};
 use crate::sim::{RayTable, World, render};
@@ -59,9 +59,24 @@ impl Views {
     /// What the camera sees, with what the pipeline makes of it over it.
     pub(super) fn picture(&mut self, seen: &Seen<'_>) -> Result<&Image> {
         match (seen.image, seen.cue) {
-            (Some(image), Some(cue)) => return self.overlay.draw(&image.frame()?, cue),
-            (Some(image), None) => self.straight.draw(&image.frame()?, &mut self.plain)?,
-            (None, _) => self.scenery.draw(&self.ideal, seen.record, &mut self.plain)?,
+            (Some(image), Some(cue)) => self.overlay.draw(&image.frame()?, cue),
+            _ => self.plain(seen),
+        }
+    }
+
+    /// The same, with some layers of it alone.
+    pub(super) fn layers(&mut self, seen: &Seen<'_>, layers: Layers) -> Result<&Image> {
+        match (seen.image, seen.cue) {
+            (Some(image), Some(cue)) => self.overlay.draw_layers(&image.frame()?, cue, layers),
+            _ => self.plain(seen),
+        }
+    }
+
+    /// What the camera sees, where there is no cue to draw over it.
+    fn plain(&mut self, seen: &Seen<'_>) -> Result<&Image> {
+        match seen.image {
+            Some(image) => self.straight.draw(&image.frame()?, &mut self.plain)?,
+            None => self.scenery.draw(&self.ideal, seen.record, &mut self.plain)?,
         }
         Ok(&self.plain)
     }
@@ -69,32 +84,47 @@ impl Views {
     /// The horizon, and the arc that was chosen as a ribbon below the vehicle, over a picture each of whose pixels is drawn
     /// `scale` pixels wide.
     pub(super) fn attitude(&self, canvas: &mut Canvas<'_>, scale: f64, seen: &Seen<'_>) {
-        let camera_from_world = world_from_camera(seen.record).transpose();
-        let place = |off_ned: DVec3| {
-            let place = self.ideal.project(camera_from_world * off_ned)?;
-            Some(place.map(|c| scale * (c + 0.5)))
-        };
-        let yaw_rad = seen.record.roll_pitch_yaw_rad[2];
-        let horizon = [-20, 20].map(|i| {
-            let (sin, cos) = (yaw_rad + 0.05 * f64::from(i)).sin_cos();
-            place(DVec3::new(cos, sin, 0.0))
-        });
-        if let [Some(left), Some(right)] = horizon {
-            canvas.stroke(&[left, right], 1.0, DIM);
+        let scaled = |ends: [[f64; 2]; 2]| ends.map(|place| place.map(|c| scale * c));
+        if let Some(ends) = self.horizon(seen.record) {
+            canvas.stroke(&scaled(ends), 1.0, DIM);
         }
-        let Some(arc) = seen.steering.arc() else { return };
         let mut before: Option<[[f64; 2]; 2]> = None;
-        for ends in arc.path_ned_m.windows(2) {
-            let aside = RIBBON_M * (ends[1] - ends[0]).cross(DVec3::NEG_Z).normalize_or_zero();
-            let sides = [-aside, aside].map(|aside| place(ends[1] + aside + BELOW_M * DVec3::Z));
-            if let [Some(left), Some(right)] = sides {
-                if let Some([left_before, right_before]) = before {
-                    canvas.polygon(&[left_before, left, right, right_before], ARC, 0.35);
-                }
-                canvas.stroke(&[left, right], 1.5, ARC);
-                before = Some([left, right]);
+        for sides in self.ribbon(seen).into_iter().map(scaled) {
+            let [left, right] = sides;
+            if let Some([left_before, right_before]) = before {
+                canvas.polygon(&[left_before, left, right, right_before], ARC, 0.35);
             }
+            canvas.stroke(&[left, right], 1.5, ARC);
+            before = Some(sides);
         }
+    }
+
+    /// Both ends of the horizon, in pixels from the picture's corner; none where it is not seen.
+    pub(super) fn horizon(&self, record: &Record) -> Option<[[f64; 2]; 2]> {
+        let yaw_rad = record.roll_pitch_yaw_rad[2];
+        let [left, right] = [-20, 20].map(|i| {
+            let (sin, cos) = (yaw_rad + 0.05 * f64::from(i)).sin_cos();
+            self.place(record, DVec3::new(cos, sin, 0.0))
+        });
+        Some([left?, right?])
+    }
+
+    /// Both sides of the arc that was chosen, from near to far, in pixels from the picture's corner: as much of it as is seen.
+    pub(super) fn ribbon(&self, seen: &Seen<'_>) -> Vec<[[f64; 2]; 2]> {
+        let Some(arc) = seen.steering.arc() else { return Vec::new() };
+        let sides = |ends: &[DVec3]| {
+            let aside = RIBBON_M * (ends[1] - ends[0]).cross(DVec3::NEG_Z).normalize_or_zero();
+            let [left, right] =
+                [-aside, aside].map(|aside| self.place(seen.record, ends[1] + aside + BELOW_M * DVec3::Z));
+            Some([left?, right?])
+        };
+        arc.path_ned_m.windows(2).filter_map(sides).collect()
+    }
+
+    /// Where something is seen that is so far to north, east and down, in pixels from the picture's corner.
+    fn place(&self, record: &Record, off_ned: DVec3) -> Option<[f64; 2]> {
+        let place = self.ideal.project(world_from_camera(record).transpose() * off_ned)?;
+        Some(place.map(|c| c + 0.5))
     }
 
     /// The danger in the directions around.
