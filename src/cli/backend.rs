@@ -41,10 +41,15 @@ impl BackendArgs {
         self.open_with(&options(), quiet)
     }
 
-    /// Like [`open`](Self::open), but prefers a software adapter to the CPU backend: for commands that exist to run
-    /// the shaders, however slowly.
-    pub(super) fn open_for_shaders(&self) -> Result<Backend> {
-        self.open_with(&GpuOptions { allow_software: true, ..options() }, false)
+    /// The same, but an adapter that computes on the CPU comes before the CPU backend: where seeing the shaders run
+    /// counts for more than speed. Says nothing if `quiet`.
+    pub(super) fn open_for_shaders(&self, quiet: bool) -> Result<Backend> {
+        self.open_with(&GpuOptions { allow_software: true, ..options() }, quiet)
+    }
+
+    /// Whether nothing to compute on was named.
+    pub(super) fn is_free(&self) -> bool {
+        self.backend.is_none() && self.adapter.is_none()
     }
 
     /// Opens two backends of the same kind on separate devices, so that the loss of one device does not affect the

@@ -42,7 +42,7 @@ const INTERRUPTED: i32 = 130;
     about,
     after_help = "\
 Examples:
-  viewsphere demo                                    a synthetic scene, its flow and its errors as pictures
+  viewsphere demo                                    flow, time to contact and steering on one page
   viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be hit, where and when

@@ -3,6 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Limits};
 
@@ -63,6 +64,27 @@ pub fn encode_png(image: &Image) -> Result<Vec<u8>> {
         PixelFormat::Rgba8 => ExtendedColorType::Rgba8,
     };
     encode_png_as(image.size, &image.data, colour)
+}
+
+/// The bytes of a JPEG file of 8-bit gray or RGB, at a quality from 1 to 100.
+///
+/// # Errors
+/// [`Error::Parameter`] for another pixel format or quality; as [`Image::frame`], if the image contradicts itself.
+pub fn encode_jpeg(image: &Image, quality: u8) -> Result<Vec<u8>> {
+    image.frame()?;
+    if !(1..=100).contains(&quality) {
+        return Err(Error::parameter("quality", quality, "1 to 100"));
+    }
+    let colour = match image.format {
+        PixelFormat::Gray8 => ExtendedColorType::L8,
+        PixelFormat::Rgb8 => ExtendedColorType::Rgb8,
+        other => return Err(Error::parameter("pixel format", other, "8-bit gray or RGB")),
+    };
+    let mut bytes = Vec::new();
+    JpegEncoder::new_with_quality(&mut bytes, quality)
+        .write_image(&image.data, image.size.width, image.size.height, colour)
+        .map_err(|problem| Error::io("JPEG encoder", std::io::Error::other(problem)))?;
+    Ok(bytes)
 }
 
 /// Writes a PNG file atomically.
@@ -234,6 +256,22 @@ mod tests {
             let image = Image { size: Size::new(5, 3), format, data };
             assert_eq!(load(&encode_png(&image).unwrap()), image);
         }
+    }
+
+    #[test]
+    fn a_jpeg_is_nearly_the_picture() {
+        for format in [PixelFormat::Gray8, PixelFormat::Rgb8] {
+            let ramp = (0..64).flat_map(|i| std::iter::repeat_n(4 * i as u8, format.bytes()));
+            let image = Image { size: Size::new(8, 8), format, data: ramp.collect() };
+            let found = load(&encode_jpeg(&image, 95).unwrap());
+            assert_eq!((found.format, found.size), (format, image.size));
+            let worst = found.data.iter().zip(&image.data).map(|(a, b)| a.abs_diff(*b)).max();
+            // Quantisation steps are 1 to 10 at this quality, and the ramp has few of the coarse ones.
+            assert!(worst.is_some_and(|worst| worst <= 6), "{worst:?}");
+        }
+        let deep = Image { size: Size::new(1, 1), format: PixelFormat::Gray16, data: vec![0; 2] };
+        assert!(matches!(encode_jpeg(&deep, 90), Err(Error::Parameter { name: "pixel format", .. })));
+        assert!(matches!(encode_jpeg(&deep, 0), Err(Error::Parameter { name: "quality", .. })));
     }
 
     #[test]

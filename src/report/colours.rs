@@ -10,7 +10,7 @@ pub(super) const GOAL: [u8; 3] = [170, 120, 255];
 /// Errors and invalid cues.
 pub(super) const WRONG: [u8; 3] = [255, 92, 92];
 /// A time to contact above the last of [`TIMES`].
-const LATER: [u8; 3] = [84, 94, 112];
+pub(super) const LATER: [u8; 3] = [84, 94, 112];
 
 /// Times to contact in seconds, each with the colour of shorter ones.
 pub(super) const TIMES: [(f64, [u8; 3]); 4] =

@@ -2,6 +2,11 @@
 
 use std::fmt::Display;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use crate::frame::Size;
+
 /// The style of all pages, light and dark.
 const STYLE: &str = include_str!("page.css");
 
@@ -23,11 +28,31 @@ pub(super) fn escape(text: impl Display) -> String {
 
 /// A page with a title, which is escaped here, and a body, which is not.
 pub(super) fn page(title: &str, body: &str) -> String {
+    page_with(title, "", body)
+}
+
+/// The same with more elements in the page's head, such as a script, which are not escaped.
+pub(super) fn page_with(title: &str, head: &str, body: &str) -> String {
     let title = escape(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n{body}</main>\n</body>\n</html>\n"
+         {head}<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n{body}</main>\n</body>\n</html>\n"
+    )
+}
+
+/// The address of a picture that is part of the page: its media type, such as `image/png`, and the file's bytes.
+pub(super) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
+    format!("data:{media_type};base64,{}", STANDARD.encode(bytes))
+}
+
+/// A picture with a caption, both escaped here. `alt` says what there is to see to those who cannot see it.
+pub(super) fn figure(uri: &str, size: Size, alt: &str, caption: &str) -> String {
+    let Size { width, height } = size;
+    let (alt, caption) = (escape(alt), escape(caption));
+    format!(
+        "<figure><img src=\"{uri}\" width=\"{width}\" height=\"{height}\" alt=\"{alt}\"/>\
+         <figcaption>{caption}</figcaption></figure>\n"
     )
 }
 

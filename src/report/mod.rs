@@ -8,6 +8,8 @@ mod canvas;
 mod colour_wheel;
 #[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "most are for pages of flights"))]
 mod colours;
+#[cfg(all(feature = "io", feature = "sim"))]
+mod demo;
 mod divergence;
 #[cfg(feature = "sim")]
 mod divergence_strip;
@@ -27,6 +29,10 @@ mod rectified;
 pub use arrows::arrows;
 pub use campaign::{CampaignRow, campaign_page};
 pub use colour_wheel::colour_wheel;
+#[cfg(feature = "cli")]
+pub(crate) use demo::GENERATOR;
+#[cfg(all(feature = "io", feature = "sim"))]
+pub use demo::{DemoFlight, DemoPair, DemoReport};
 pub use divergence::{FULL_DIVERGENCE_HZ, diverging};
 #[cfg(feature = "sim")]
 pub use divergence_strip::divergence_strip;

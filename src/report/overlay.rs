@@ -16,6 +16,8 @@ use crate::sphere::{Grid, Threat, bearing};
 /// The displacement in full colour, relative to the image's width: constant, so that colours are comparable between
 /// frames.
 const FULL_COLOUR: f32 = 0.01;
+/// How much of a sector's colour a filled sector has.
+const FILLED: f32 = 0.45;
 /// The opacity of the fullest colour over the gray image.
 const OPAQUE: f32 = 0.6;
 const HEADING: [u8; 3] = [255; 3];
@@ -38,6 +40,17 @@ pub struct Overlay {
     sectors: Sectors,
     up_camera: Option<DVec3>,
     image: Image,
+}
+
+/// The layers over an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Layers {
+    /// Everything, each sector as a frame.
+    All,
+    /// The flow.
+    Flow,
+    /// The sectors, filled, the threat and the direction of motion.
+    Sectors,
 }
 
 /// The sector of each pixel.
@@ -73,28 +86,43 @@ impl Overlay {
     /// # Errors
     /// [`Error::SizeMismatch`] for a frame or a flow of another size.
     pub fn draw(&mut self, frame: &Frame<'_>, cue: &Cue<'_>) -> Result<&Image> {
-        self.picture.draw(frame, &mut self.image)?;
-        let scale = (self.ideal.size.width as usize / 200).max(1);
-        if cue.invalid.is_some() {
-            self.border(2 * scale);
-        } else {
-            if let Some(flow) = cue.flow {
-                self.flow(flow)?;
-            }
-            self.outline(cue);
-            if let Some(up) = self.up_camera {
-                self.horizon(up);
-            }
-            if let Some(threat) = &cue.threat {
-                self.threat(threat, &cue.sectors.grid, scale);
-            }
-            if cue.heading.is_known() {
-                self.cross(cue.heading.direction, 5.0 * scale as f64);
-            }
-        }
-        let bottom = f64::from(self.ideal.size.height);
+        self.draw_layers(frame, cue, Layers::All)?;
+        let (bottom, scale) = (f64::from(self.ideal.size.height), self.scale());
         text(&mut self.image, [0.0, bottom], &format!("{:.2}s", cue.time_s), [255; 3], scale);
         Ok(&self.image)
+    }
+
+    /// The same without the frame's time, and of the rest what `layers` has.
+    pub(super) fn draw_layers(&mut self, frame: &Frame<'_>, cue: &Cue<'_>, layers: Layers) -> Result<&Image> {
+        self.picture.draw(frame, &mut self.image)?;
+        let scale = self.scale();
+        if cue.invalid.is_some() {
+            self.border(2 * scale);
+            return Ok(&self.image);
+        }
+        if let Some(flow) = cue.flow.filter(|_| layers != Layers::Sectors) {
+            self.flow(flow)?;
+        }
+        match layers {
+            Layers::All => self.outline(cue),
+            Layers::Sectors => self.fill(cue),
+            Layers::Flow => return Ok(&self.image),
+        }
+        if let Some(up) = self.up_camera {
+            self.horizon(up);
+        }
+        if let Some(threat) = &cue.threat {
+            self.threat(threat, &cue.sectors.grid, scale);
+        }
+        if cue.heading.is_known() {
+            self.cross(cue.heading.direction, 5.0 * scale as f64);
+        }
+        Ok(&self.image)
+    }
+
+    /// How many pixels wide a dot of text and the lines are.
+    fn scale(&self) -> usize {
+        (self.ideal.size.width as usize / 200).max(1)
     }
 
     fn flow(&mut self, flow: &FlowField) -> Result<()> {
@@ -117,22 +145,37 @@ impl Overlay {
         Ok(())
     }
 
-    /// Draws each sector's outline, one pixel wide, in the colour of its time to contact.
-    fn outline(&mut self, cue: &Cue<'_>) {
+    /// The colour of each sector's time; none where it is not met soon.
+    fn colours(&mut self, cue: &Cue<'_>) -> Vec<Option<[u8; 3]>> {
         let grid = &cue.sectors.grid;
         if self.sectors.grid != Some(*grid) {
             self.sectors = Sectors { grid: Some(*grid), of_pixel: sector_of_pixels(&self.ideal, grid) };
         }
-        let colours: Vec<(Option<[u8; 3]>, f32)> = (cue.sectors.sectors.iter())
-            .map(|sector| {
-                let time = cue.sectors.time_to_contact_s(sector)[1].unwrap_or(f64::INFINITY);
-                let found = TIMES.iter().find(|(limit, _)| time < *limit).map(|(_, colour)| *colour);
-                (found, if found.is_some() { 0.9 } else { 0.25 })
-            })
-            .collect();
+        let colour = |sector| {
+            let time = cue.sectors.time_to_contact_s(sector)[1].unwrap_or(f64::INFINITY);
+            TIMES.iter().find(|(limit, _)| time < *limit).map(|(_, colour)| *colour)
+        };
+        cue.sectors.sectors.iter().map(colour).collect()
+    }
+
+    /// Each sector that is met soon in the colour of its time.
+    fn fill(&mut self, cue: &Cue<'_>) {
+        let colours = self.colours(cue);
+        let pixels = self.image.data.as_chunks_mut::<3>().0.iter_mut();
+        for (pixel, sector) in pixels.zip(&self.sectors.of_pixel) {
+            if let Some(Some(colour)) = colours.get(*sector as usize) {
+                blend(pixel, *colour, FILLED);
+            }
+        }
+    }
+
+    /// Each sector's own frame, a pixel wide, in the colour of its time.
+    fn outline(&mut self, cue: &Cue<'_>) {
+        let colours = self.colours(cue);
         let (width, of) = (self.ideal.size.width as usize, &self.sectors.of_pixel);
         for (i, pixel) in self.image.data.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            let Some((colour, share)) = colours.get(of[i] as usize) else { continue };
+            let Some(colour) = colours.get(of[i] as usize) else { continue };
+            let share = if colour.is_some() { 0.9 } else { 0.25 };
             let x = i % width;
             let beside = [
                 (x > 0).then(|| i - 1),
@@ -141,7 +184,7 @@ impl Overlay {
                 (i + width < of.len()).then_some(i + width),
             ];
             if beside.into_iter().any(|at| at.is_none_or(|at| of[at] != of[i])) {
-                blend(pixel, colour.unwrap_or([0; 3]), *share);
+                blend(pixel, colour.unwrap_or([0; 3]), share);
             }
         }
     }
@@ -290,6 +333,28 @@ mod tests {
         assert!(beside[0] < 90 && beside[0] == beside[1], "{beside:?}");
         // Without motion and nearness the centre of a sector stays gray.
         assert_eq!((at(&image, right / 2, 15), at(&image, 90, 60)), (GRAY, GRAY));
+    }
+
+    #[test]
+    fn layers_show_the_flow_or_the_sectors() {
+        let camera = camera();
+        let mut sectors = Sectors::unknown(Grid::over(&camera, [4, 3]).unwrap());
+        sectors.interval_s = 0.1;
+        (sectors.sectors[0].coverage, sectors.sectors[0].nearness_rate_hz) = (1.0, [2.0; 3]);
+        let flow = FlowField { size: SIZE, data: vec![[-2.0, 0.0]; SIZE.pixels()] };
+        let gray = vec![90; SIZE.pixels()];
+        let frame = Frame::new(SIZE, PixelFormat::Gray8, &gray).unwrap();
+        let mut overlay = Overlay::new(&camera, &camera).unwrap();
+        let mut shown = |layers| {
+            let image = overlay.draw_layers(&frame, &cue(&sectors, &flow), layers).unwrap();
+            let image = image.data.as_chunks::<3>().0.to_vec();
+            [at(&image, 20, 20), at(&image, 120, 120)]
+        };
+        // To the right is red, and so is what is met within a second: the sector at the upper left.
+        let [[r, g, _], elsewhere] = shown(Layers::Flow);
+        assert!(r > 150 && g < 80 && elsewhere == [r, g, elsewhere[2]], "{r} {g} {elsewhere:?}");
+        let [[r, g, b], elsewhere] = shown(Layers::Sectors);
+        assert!(r > 150 && g == b && g < 80 && elsewhere == GRAY, "{r} {g} {b} {elsewhere:?}");
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::html::escape;
 
-/// The width of the whole drawing.
-const WIDTH: f64 = 1000.0;
-/// Room for the labels of the axes, and above the plot for its title.
+/// Width of a drawing that takes all of a page.
+pub(super) const WIDE: f64 = 1000.0;
+/// Room for the labels of the axes and above the plot for its title.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 24.0;
@@ -34,7 +34,8 @@ pub(super) struct Plot<'a> {
     pub(super) unit: &'a str,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    pub(super) height: f64,
+    /// Of the whole drawing, with its labels.
+    pub(super) size: [f64; 2],
     pub(super) curves: Vec<Curve<'a>>,
     /// Named horizontal lines.
     pub(super) levels: Vec<(f64, &'a str)>,
@@ -44,7 +45,7 @@ pub(super) struct Plot<'a> {
 impl Plot<'_> {
     /// The plot as an `svg` element.
     pub(super) fn svg(&self) -> String {
-        let frame = PlotArea { x: self.x, y: self.y, height: self.height };
+        let frame = PlotArea { x: self.x, y: self.y, size: self.size };
         let mut svg = frame.begin(self.title);
         let [bottom, top] = self.y.map(|y| frame.at([self.x[0], y])[1]);
         for span in &self.spans {
@@ -80,7 +81,7 @@ impl Plot<'_> {
         let unit = if self.unit.is_empty() { String::new() } else { format!(", {}", self.unit) };
         let title = format!("{}{unit}", self.title);
         let mut svg = format!("<text class=\"title\" x=\"{LEFT}\" y=\"14\">{}</text>\n", escape(&title));
-        let mut x = WIDTH - RIGHT;
+        let mut x = self.size[0] - RIGHT;
         for curve in self.curves.iter().rev().filter(|_| self.curves.len() > 1) {
             // About the width of text of this size.
             x -= 6.2 * curve.name.chars().count() as f64;
@@ -102,21 +103,24 @@ impl Plot<'_> {
 pub(super) struct PlotArea {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    /// The height of the whole drawing.
-    pub(super) height: f64,
+    /// Of the whole drawing, with its labels.
+    pub(super) size: [f64; 2],
 }
 
 impl PlotArea {
-    /// Width of the part between the axes.
-    pub(super) const INNER: f64 = WIDTH - LEFT - RIGHT;
-    /// The height of everything above and below the plot area.
+    /// What a drawing is wider than the part between the axes.
+    pub(super) const BESIDE: f64 = LEFT + RIGHT;
+    /// What a drawing is higher than that part.
     pub(super) const ABOVE_AND_BELOW: f64 = TOP + BOTTOM;
 
+    /// The beginning of the element. Its `data-axis` tells scripts where the horizontal axis begins and ends, and with which
+    /// values.
     pub(super) fn begin(&self, name: &str) -> String {
+        let [width, height] = self.size;
+        let ([from, to], left, right) = (self.x, LEFT, width - RIGHT);
         format!(
-            "<svg viewBox=\"0 0 {WIDTH} {:.0}\" width=\"{WIDTH}\" height=\"{:.0}\" role=\"img\" aria-label=\"{}\">\n",
-            self.height,
-            self.height,
+            "<svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" role=\"img\" \
+             aria-label=\"{}\" data-axis=\"{left} {right} {from} {to}\">\n",
             escape(name),
         )
     }
@@ -124,8 +128,8 @@ impl PlotArea {
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let share = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
         [
-            LEFT + share(x, self.x) * Self::INNER,
-            self.height - BOTTOM - share(y, self.y) * (self.height - TOP - BOTTOM),
+            LEFT + share(x, self.x) * (self.size[0] - Self::BESIDE),
+            self.size[1] - BOTTOM - share(y, self.y) * (self.size[1] - Self::ABOVE_AND_BELOW),
         ]
     }
 
@@ -143,7 +147,7 @@ impl PlotArea {
                 number(y),
             );
         }
-        for x in ticks(self.x, 10) {
+        for x in ticks(self.x, ((right - left) / 90.0) as usize) {
             let at = self.at([x, self.y[0]])[0];
             svg += &format!(
                 "<line class=\"axis\" x1=\"{at:.1}\" y1=\"{bottom:.1}\" x2=\"{at:.1}\" y2=\"{:.1}\"/>\
@@ -244,7 +248,7 @@ mod tests {
             unit: "m",
             x: [0.0, 2.0],
             y: [0.0, 4.0],
-            height: 160.0,
+            size: [1000.0, 160.0],
             curves: vec![curve, Curve { name: "d", class: "c1", points: Vec::new() }],
             levels: vec![(2.0, "limit")],
             spans: vec![Span { from: 0.5, to: f64::INFINITY, class: "bad", name: "<why>".to_owned() }],

@@ -3,6 +3,7 @@
 
 mod campaign;
 mod commands;
+mod demo;
 mod errors;
 mod feed;
 mod fly;

@@ -6,7 +6,7 @@ mod measured;
 mod outputs;
 mod recorder;
 pub(super) mod setup;
-mod timing;
+pub(super) mod timing;
 mod video;
 
 use std::path::PathBuf;

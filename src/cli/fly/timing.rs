@@ -12,13 +12,13 @@ const REAL_TIME_MS: f64 = 33.0;
 
 /// The costs of all frames so far.
 #[derive(Default)]
-pub(super) struct Costs {
+pub(in crate::cli) struct Costs {
     frames: Vec<Cost>,
     latencies: Vec<Duration>,
 }
 
 #[derive(Serialize)]
-pub(super) struct Timing {
+pub(in crate::cli) struct Timing {
     /// What drew the pictures and what computed the flow; null where there are no pictures.
     backends: Option<[String; 2]>,
     frames: usize,
@@ -40,20 +40,20 @@ struct Spread {
 }
 
 impl Costs {
-    pub(super) fn add(&mut self, cost: Cost) {
+    pub(in crate::cli) fn add(&mut self, cost: Cost) {
         self.frames.push(cost);
     }
 
-    pub(super) fn add_latency(&mut self, latency: Duration) {
+    pub(in crate::cli) fn add_latency(&mut self, latency: Duration) {
         self.latencies.push(latency);
     }
 
     /// What each frame cost, in their order.
-    pub(super) fn frames(&self) -> &[Cost] {
+    pub(in crate::cli) fn frames(&self) -> &[Cost] {
         &self.frames
     }
 
-    pub(super) fn timing(&self, backends: Option<[String; 2]>) -> Timing {
+    pub(in crate::cli) fn timing(&self, backends: Option<[String; 2]>) -> Timing {
         let part =
             |part: fn(&Cost) -> Duration| Spread::of(self.frames.iter().map(part)).unwrap_or(Spread::NONE);
         Timing {
@@ -71,8 +71,17 @@ impl Costs {
 }
 
 impl Timing {
+    /// What the parts take, in the median.
+    pub(in crate::cli) fn parts(&self) -> String {
+        let [sight, pipeline, steer] =
+            [self.sensor_ms, self.pipeline_ms, self.steer_ms].map(|part| part.median);
+        format!(
+            "{sight:.2} ms to render a picture, {pipeline:.2} ms from it to sectors, {steer:.2} ms to a command"
+        )
+    }
+
     /// What is said of it beside the summary.
-    pub(super) fn text(&self) -> String {
+    pub(in crate::cli) fn text(&self) -> String {
         let Spread { median, p99 } = self.total_ms;
         format!(
             "{median:.2} ms a frame, p99 {p99:.2} ms, {} of {} over {REAL_TIME_MS} ms",

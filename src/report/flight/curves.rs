@@ -3,7 +3,7 @@
 use super::page::FlightReport;
 use crate::quantile::{nearest, sorted};
 use crate::report::html::section;
-use crate::report::plot::{Curve, Plot, Span, range};
+use crate::report::plot::{Curve, Plot, Span, WIDE, range};
 use crate::sim::flight::{Cost, FRAME_S, Record};
 use crate::steer::Source;
 
@@ -33,7 +33,7 @@ pub(super) fn relative_error(record: &Record) -> Option<f64> {
 
 /// The curves, under headings.
 pub(super) fn sections(report: &FlightReport<'_>) -> String {
-    let over = Over { records: report.records, end_s: report.summary.time_s.max(FRAME_S) };
+    let over = Over { records: report.records, end_s: report.summary.time_s.max(FRAME_S), width: WIDE };
     let mut html = section(
         "Room",
         "Distance from the middle of the vehicle to the nearest surface, and height above the ground.",
@@ -61,10 +61,19 @@ pub(super) fn sections(report: &FlightReport<'_>) -> String {
     html
 }
 
+/// The time to contact ahead, and the bank, as drawings of this width.
+pub(in crate::report) fn contact_and_bank(records: &[Record], width: f64) -> [String; 2] {
+    let end_s = records.last().map_or(FRAME_S, |record| record.time_s.max(FRAME_S));
+    let over = Over { records, end_s, width };
+    [over.contact(), over.bank()]
+}
+
 /// Curves over the time of a flight.
 struct Over<'a> {
     records: &'a [Record],
     end_s: f64,
+    /// Of each drawing.
+    width: f64,
 }
 
 impl<'a> Over<'a> {
@@ -74,7 +83,8 @@ impl<'a> Over<'a> {
 
     fn plot<'b>(&self, title: &'b str, unit: &'b str, y: [f64; 2], curves: Vec<Curve<'b>>) -> Plot<'b> {
         let x = [0.0, self.end_s];
-        Plot { title, unit, x, y, height: HEIGHT, curves, levels: Vec::new(), spans: Vec::new() }
+        let size = [self.width, HEIGHT];
+        Plot { title, unit, x, y, size, curves, levels: Vec::new(), spans: Vec::new() }
     }
 
     fn clearance(&self, report: &FlightReport<'_>) -> String {
@@ -139,8 +149,8 @@ impl<'a> Over<'a> {
             let name = part[0].invalid.clone().unwrap_or_default();
             spans.push(Span { from: part[0].time_s, to: part[part.len() - 1].time_s + FRAME_S, class, name });
         }
-        Plot { height: STRIP, spans, ..self.plot("Trusted share of the view", "", [0.0, 1.0], vec![curve]) }
-            .svg()
+        let size = [self.width, STRIP];
+        Plot { size, spans, ..self.plot("Trusted share of the view", "", [0.0, 1.0], vec![curve]) }.svg()
     }
 
     fn cost(&self, costs: &[Cost]) -> String {

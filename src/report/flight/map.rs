@@ -9,26 +9,25 @@ use crate::sim::Course;
 use crate::sim::flight::{FlightFrame, Record};
 
 /// What is shown from the lower border to the upper one, metres.
-const SPAN_M: f64 = 90.0;
+pub(super) const SPAN_M: f64 = 90.0;
 /// Where the vehicle is, from the left and from the top, as parts of the map.
-const VEHICLE: [f64; 2] = [0.5, 0.8];
-const SOLID: [u8; 3] = [122, 132, 150];
-const PATH: [u8; 3] = [90, 170, 255];
-const MIDDLE: [u8; 3] = [64, 72, 88];
+pub(super) const VEHICLE: [f64; 2] = [0.5, 0.8];
+pub(super) const SOLID: [u8; 3] = [122, 132, 150];
+pub(super) const PATH: [u8; 3] = [90, 170, 255];
+pub(super) const MIDDLE: [u8; 3] = [64, 72, 88];
 
-/// A course, and the way flown through it so far.
+/// What stands still on a map.
 #[derive(Debug)]
-pub(super) struct Map {
-    footprints: Vec<Footprint>,
-    centre_line_m: Vec<DVec2>,
+pub(super) struct Ground {
+    pub(super) footprints: Vec<Footprint>,
+    pub(super) centre_line_m: Vec<DVec2>,
     start_m: DVec2,
-    length_m: f64,
+    pub(super) length_m: f64,
     /// Unit vectors towards the goal and to the right of it, north and east.
     axes: [DVec2; 2],
-    path_m: Vec<DVec2>,
 }
 
-impl Map {
+impl Ground {
     pub(super) fn new(course: &Course) -> Self {
         let height_m = -course.start_ned_m.z;
         let footprints = (course.world.surfaces.iter())
@@ -41,8 +40,30 @@ impl Map {
             start_m: course.start_ned_m.truncate(),
             length_m: course.length_m,
             axes: [DVec2::new(cos, sin), DVec2::new(-sin, cos)],
-            path_m: Vec::new(),
         }
+    }
+
+    /// A way to north and east as one to the right and towards the goal.
+    pub(super) fn turned(&self, way: DVec2) -> [f64; 2] {
+        [way.dot(self.axes[1]), way.dot(self.axes[0])]
+    }
+
+    /// The same of a place, from the start.
+    pub(super) fn from_start(&self, place: DVec2) -> [f64; 2] {
+        self.turned(place - self.start_m)
+    }
+}
+
+/// A course, and the way flown through it so far.
+#[derive(Debug)]
+pub(super) struct Map {
+    ground: Ground,
+    path_m: Vec<DVec2>,
+}
+
+impl Map {
+    pub(super) fn new(course: &Course) -> Self {
+        Self { ground: Ground::new(course), path_m: Vec::new() }
     }
 
     /// Draws what is around; the direction of the goal is up.
@@ -53,19 +74,20 @@ impl Map {
         canvas.fill(BACKGROUND);
         let [width, height] = canvas.size();
         let scale = height / SPAN_M;
-        let [ahead, right] = self.axes;
+        let ground = &self.ground;
+        let [ahead, right] = ground.axes;
         let place = |point: DVec2| {
-            let off = point - here;
-            [VEHICLE[0] * width + scale * off.dot(right), VEHICLE[1] * height - scale * off.dot(ahead)]
+            let [right, ahead] = ground.turned(point - here);
+            [VEHICLE[0] * width + scale * right, VEHICLE[1] * height - scale * ahead]
         };
         let around = |off: DVec3| place(here + off.truncate());
-        for ends in self.centre_line_m.windows(2) {
+        for ends in ground.centre_line_m.windows(2) {
             canvas.stroke(&[place(ends[0]), place(ends[1])], 1.0, MIDDLE);
         }
-        let goal = self.start_m + self.length_m * ahead;
+        let goal = ground.start_m + ground.length_m * ahead;
         let line = [-1e3, 1e3].map(|off| place(goal + off * right));
         canvas.stroke(&line, 2.0, colours::GOAL);
-        for footprint in self.footprints.iter().filter(|footprint| footprint.is_near(here, SPAN_M)) {
+        for footprint in ground.footprints.iter().filter(|footprint| footprint.is_near(here, SPAN_M)) {
             match footprint {
                 Footprint::Circle(centre, radius_m) => {
                     canvas.disc(place(*centre), (scale * radius_m).max(1.0), SOLID, 1.0);
@@ -91,7 +113,7 @@ impl Map {
             let points: Vec<_> = std::iter::once(DVec3::ZERO).chain(arc.path_ned_m).map(around).collect();
             canvas.stroke(&points, 3.0, ARC);
         }
-        vehicle(canvas, place(here), self.axes, record);
+        vehicle(canvas, place(here), ground.axes, record);
         let bar = 20.0 * scale;
         let foot = [14.0, height - 14.0];
         canvas.stroke(&[foot, [foot[0] + bar, foot[1]]], 2.0, DIM);

@@ -1,11 +1,17 @@
-//! A flight to look at: frame by frame as a video, and as a whole as a page.
+//! A flight to look at: frame by frame as a video or in a page, and as a whole as a page.
 
-mod curves;
+pub(super) mod curves;
 mod danger;
+#[cfg(feature = "io")]
+mod film;
 mod map;
-mod page;
+pub(super) mod page;
+pub(super) mod player;
+mod script;
 mod video;
+mod views;
 mod way;
 
+pub use film::FlightFilm;
 pub use page::FlightReport;
 pub use video::FlightVideo;

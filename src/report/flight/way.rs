@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::report::footprint::Footprint;
 use crate::report::html::escape;
-use crate::report::plot::PlotArea;
+use crate::report::plot::{PlotArea, WIDE};
 use crate::sim::Course;
 use crate::sim::flight::{Outcome, Record};
 
@@ -31,13 +31,13 @@ pub(super) fn svg(course: &Course, records: &[Record], outcome: Outcome) -> Stri
     };
     let ([first, last], [lowest, highest]) = (bounds(0, 0.0), bounds(1, 0.0));
     let x = [first.min(0.0) - BEFORE_M, last.max(course.length_m) + BEHIND_M];
-    let scale = PlotArea::INNER / (x[1] - x[0]);
+    let scale = (WIDE - PlotArea::BESIDE) / (x[1] - x[0]);
     let most = (HIGHEST - PlotArea::ABOVE_AND_BELOW) / scale;
     // A way to the side that is higher than the drawing may be is cut around its middle.
     let middle = 0.5 * (lowest + highest);
     let half = (0.5 * (highest - lowest) + ASIDE_M).min(0.5 * most);
     let y = [middle - half, middle + half];
-    let frame = PlotArea { x, y, height: 2.0 * half * scale + PlotArea::ABOVE_AND_BELOW };
+    let frame = PlotArea { x, y, size: [WIDE, 2.0 * half * scale + PlotArea::ABOVE_AND_BELOW] };
 
     let mut svg = frame.begin("The way from above");
     let [[l, b], [r, t]] = [frame.at([x[0], y[0]]), frame.at([x[1], y[1]])];

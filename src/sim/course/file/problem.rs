@@ -30,7 +30,8 @@ impl Part<'_> {
     pub(super) fn read<'de, T: Deserialize<'de>>(&self, text: &'de [u8]) -> Result<T> {
         // A struct of serde is read from a list of its values too.
         if let Some(first @ (b'[' | b'"')) = text.trim_ascii_start().first().copied() {
-            let found = if first == b'[' { Cow::from("a list") } else { String::from_utf8_lossy(text) };
+            let found =
+                if first == b'[' { Cow::from("a list") } else { String::from_utf8_lossy(text.trim_ascii()) };
             return Err(self.wrong(self.what, found, "an object in braces"));
         }
         let mut json = Deserializer::from_slice(text);

@@ -100,7 +100,12 @@ fn what_is_wrong_is_named_with_its_place() {
             "\"name\": \"a\\nb\"",
             "name is \"a\\nb\", expected a line of 1 to 200 characters",
         ),
-        ("\"name\": \"yard\"", "\"nam\": \"yard\"", "name is missing, expected it once"),
+        ("\"name\": \"yard\",", "", "name is missing, expected it once"),
+        (
+            "\"name\": \"yard\"",
+            "\"nam\": \"yard\"",
+            "member is \"nam\", expected format, version, name, seed, ",
+        ),
         ("\"name\"", "\"gaol\": 3, \"name\"", "member is \"gaol\", expected format, version, name, seed, "),
         ("120", "0", "length_m is 0, expected above 0 to 1000000"),
         ("120", "1e300", "length_m is 1e300, expected a number within ±1000000"),

@@ -1,0 +1,216 @@
+//! `viewsphere demo`: the flow of a synthetic pair, and a simulated flight steered by flow.
+
+mod flight;
+mod pair;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use self::flight::{Flown, Plan};
+use self::pair::Pair;
+use super::args::whole;
+use super::backend::BackendArgs;
+use super::eval::FlowErrorFigures;
+use super::flow_args::FlowArgs;
+use super::fly::timing::Timing;
+use super::{Outcome, input, print};
+use crate::error::{Error, Result};
+use crate::frame::Size;
+use crate::io::write_bytes;
+use crate::report::{DemoReport, GENERATOR};
+use crate::sim::CourseKind;
+use crate::sim::flight::{FRAME_S, FlightConfig};
+
+/// Show flow, time to contact and steering on one page.
+///
+/// Computes the flow of a synthetic pair and compares it with the known motion; then flies through a simulated world on
+/// nothing but the flow of its camera's images, a gyro and an airspeed sensor. Both are shown on one self-contained page,
+/// index.html: open it in a browser. The last line of output is its path.
+///
+/// Computes on any adapter, also on a software adapter such as lavapipe; without one, on the CPU backend. If a software
+/// adapter is too slow for the flight and was not asked for, the CPU backend flies; page and output say so.
+///
+/// Written beside the page are the pair's frame_0.png, frame_1.png, flow.flo, color.png, truth.png (both to one scale),
+/// arrows.png, error.png (white is 1 px or more) and confidence.png.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  viewsphere demo
+  viewsphere demo -o /tmp/demo --world forest --seed 7
+  viewsphere demo --seconds 20 --world corridor
+  viewsphere demo --size 1280x720 --preset accurate
+  viewsphere demo --backend cpu --json")]
+pub(super) struct Demo {
+    /// Folder to write into; it is made if it is not there. Files of an earlier demo are replaced, others of these names not
+    #[arg(short, long, value_name = "FOLDER", default_value = "demo")]
+    output: PathBuf,
+    /// Size of the pair's pictures
+    #[arg(long, value_name = "WxH", default_value = "640x480")]
+    size: Size,
+    /// The world to fly through, with its parameters (see `viewsphere fly --help`)
+    #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "city")]
+    world: CourseKind,
+    /// Which one of its kind
+    #[arg(long, value_name = "N", default_value_t = 4, allow_negative_numbers = true, value_parser = whole::<u64>)]
+    seed: u64,
+    /// How long to fly, 0.1 to 120 s; the flight may end before
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Say nothing while it works
+    #[arg(long)]
+    quiet: bool,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    flow: FlowArgs,
+    #[command(flatten)]
+    backend: BackendArgs,
+}
+
+const PAGE: &str = "index.html";
+/// In so many bytes from its beginning it says what it was made by.
+const HEAD: u64 = 1024;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    backend: &'a str,
+    width: u32,
+    height: u32,
+    accuracy: FlowErrorFigures,
+    median_ms: f64,
+    max_ms: f64,
+    fps: f64,
+    color_scale_px: f32,
+    flight: FlightFigures<'a>,
+    folder: PathBuf,
+    page: PathBuf,
+}
+
+#[derive(Serialize)]
+struct FlightFigures<'a> {
+    backend: &'a str,
+    /// Why that is another backend than the pair's; null if it is the same.
+    why: Option<&'a str>,
+    world: &'a str,
+    seed: u64,
+    time_s: f64,
+    /// How it ended; null if it was still going on.
+    outcome: Option<&'static str>,
+    least_clearance_m: f64,
+    timing: Timing,
+}
+
+impl Demo {
+    pub(super) fn run(&self) -> Result<Outcome> {
+        let flow = self.flow.algorithm()?;
+        if !(0.1..=120.0).contains(&self.seconds) {
+            return Err(Error::parameter("--seconds", self.seconds, "0.1 to 120"));
+        }
+        let course = self.world.course(self.seed)?;
+        let mut config = FlightConfig::default();
+        // To be drawn: nothing is steered by it.
+        config.pipeline.read_flow = true;
+        input::folder(&self.output)?;
+        self.spare()?;
+        let backend = self.backend.open_for_shaders(self.quiet)?;
+        if !self.quiet {
+            print::note(format_args!("the flow of a pair of {}", self.size));
+        }
+        let pair = Pair::compute(backend.clone(), self.size, flow)?;
+        let plan = Plan {
+            course: &course,
+            config: &config,
+            frames: (self.seconds / FRAME_S).round() as u64,
+            quiet: self.quiet,
+        };
+        let flown = plan.fly(&backend, &pair.shown.adapter, self.backend.is_free())?;
+        let page = DemoReport { pair: &pair.shown, flight: flown.report(&course, &config) }.html()?;
+        input::within(&self.output, || {
+            // First, since by this page the files of a demo are known as such.
+            write_bytes(self.output.join(PAGE), page.as_bytes())?;
+            pair.write(&self.output)
+        })?;
+        self.tell(&pair, &flown, &course.name)?;
+        Ok(Outcome::Done)
+    }
+
+    /// Checks that the files which would be replaced are those of a demo.
+    fn spare(&self) -> Result<()> {
+        let mut head = Vec::new();
+        let page = File::open(self.output.join(PAGE));
+        let read = page.and_then(|page| page.take(HEAD).read_to_end(&mut head));
+        let made = read.is_ok() && String::from_utf8_lossy(&head).contains(GENERATOR);
+        let names = [PAGE].into_iter().chain(Pair::FILES);
+        match names.map(|name| self.output.join(name)).find(|path| path.is_file()) {
+            Some(path) if !made => {
+                let expected = "a folder without it, or one with the index.html of an earlier demo";
+                Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn tell(&self, pair: &Pair, flown: &Flown, world: &str) -> Result<()> {
+        let (shown, page) = (&pair.shown, self.output.join(PAGE));
+        let [median_ms, max_ms] = shown.frame_ms;
+        let (timing, fps) = (flown.timing(), 1e3 / median_ms);
+        if self.json {
+            return print::json(&Report {
+                backend: &shown.adapter,
+                width: self.size.width,
+                height: self.size.height,
+                accuracy: shown.accuracy.into(),
+                median_ms,
+                max_ms,
+                fps,
+                color_scale_px: shown.scale_px,
+                flight: FlightFigures {
+                    backend: &flown.adapter,
+                    why: flown.why.as_deref(),
+                    world,
+                    seed: self.seed,
+                    time_s: flown.time_s(),
+                    outcome: flown.outcome.map(|outcome| outcome.name()),
+                    least_clearance_m: flown.least_clearance_m(),
+                    timing,
+                },
+                folder: self.output.clone(),
+                page,
+            });
+        }
+        let e = &shown.accuracy;
+        let ended = flown.outcome.map_or("still flying".to_owned(), |outcome| outcome.to_string());
+        let mut text = format!(
+            "backend    {}\n\
+             accuracy   mean endpoint error {:.4} px, mean angular error {:.3}°, {:.2} % over 1 px\n\
+             speed      {median_ms:.2} ms a frame, {fps:.0} frames a second at {}\n\
+             colours    {:.4} px in full colour\n\
+             flight     {world}, seed {}: {ended} after {:.1} s, {:.2} m clear at least\n\
+             on         {}\n\
+             parts      {}\n\
+             frames     {}\n",
+            shown.adapter,
+            e.aee_px,
+            e.aae_deg,
+            100.0 * e.r1,
+            self.size,
+            shown.scale_px,
+            self.seed,
+            flown.time_s(),
+            flown.least_clearance_m(),
+            flown.adapter,
+            timing.parts(),
+            timing.text(),
+        );
+        if let Some(why) = &flown.why {
+            text += &format!("why        {why}\n");
+        }
+        text += &format!("pictures   in {}\n{}", self.output.display(), page.display());
+        print::text(&text)
+    }
+}
