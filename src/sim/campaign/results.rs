@@ -247,7 +247,7 @@ mod tests {
             format!("least_clearance_m {least}, low_clearance_m {low}, outcome \"{outcome}\"")
         };
         let expected = format!(
-            "b: result is that of {key} with {}, expected the one that is there already, with {}",
+            "b: result is that of {key} with {}, expected the one already present, with {}",
             figures("0.5", "0.8333333333333333", "crashed"),
             figures("0.3333333333333333", "0.6666666666666666", "reached"),
         );
