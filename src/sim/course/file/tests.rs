@@ -116,7 +116,7 @@ fn what_is_wrong_is_named_with_its_place() {
         (
             "-10]",
             "10]",
-            "start_ned_m is [0, 0, 10], -10 m from the nearest surface, expected a place with room",
+            "start_ned_m is [0, 0, 10], -10 m from the nearest surface, expected a position outside all surfaces",
         ),
         (
             "-10]",
@@ -243,7 +243,7 @@ fn what_could_not_be_read_is_not_written() {
         (Course { centre_line_m: vec![DVec2::ZERO], ..good.clone() }, "centre_line_m is 1 points"),
         (Course { name: String::new(), ..good.clone() }, "name is \"\""),
         (Course { start_ned_m: DVec3::NAN, ..good }, "start_ned_m is [NaN, NaN, NaN]"),
-        (far, "world is far away with surface 4, expected within ±1000000 m"),
+        (far, "world is one whose surface 4 is too far away, expected within ±1000000 m"),
     ];
     for (course, expected) in cases {
         let found = encode(&course).unwrap_err().to_string();
