@@ -67,7 +67,7 @@ impl Pipeline {
     /// Creates a pipeline for the frames of a camera.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter or camera that is out of range, [`Error::SizeMismatch`] for a mask of
+    /// [`Error::Parameter`](crate::Error::Parameter) for a parameter or camera that is out of range, [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a mask of
     /// another size than the camera's; and as [`Stream::new`].
     pub fn new(backend: Backend, camera: &Camera, config: &PipelineConfig) -> Result<Self> {
         config.validate()?;

@@ -16,7 +16,7 @@ const SCALE: usize = 30;
 ///
 /// # Errors
 /// [`Error::Parameter`] for a `side` that is not 1 to 64, or an image above the largest size; [`Error::SizeMismatch`]
-/// for planes of different sizes; the errors of [`Plane::validate`].
+/// for planes of different sizes; the errors of [`Plane::validate`](crate::frame::Plane::validate).
 pub fn divergence_strip(divergences: &Divergences, side: u32, time_s: f64) -> Result<Image> {
     let Divergences { measured_hz, true_hz } = divergences;
     let cells = measured_hz.size;

@@ -164,7 +164,7 @@ impl SteerParams {
     /// Checks every parameter's range.
     ///
     /// # Errors
-    /// [`Error::Parameter`], naming the first one that is out of range.
+    /// [`Error::Parameter`](crate::Error::Parameter), naming the first one that is out of range.
     pub fn validate(&self) -> Result<()> {
         let quarter = std::f64::consts::FRAC_PI_4;
         let Weights { danger, goal, change, bank, climb } = self.weights;

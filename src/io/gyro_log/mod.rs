@@ -18,7 +18,7 @@ const MAX_LINE: u64 = 4096;
 
 /// Reads the samples of a log, in the order of its lines.
 ///
-/// The first line may name the columns: [`write`] writes `time_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s`, and EuRoC's
+/// The first line may name the columns: [`write()`] writes `time_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s`, and EuRoC's
 /// `#timestamp [ns],w_RS_S_x [rad s^-1],…` is understood as well, with further columns and in any order, with times
 /// in s, ms, µs or ns and rates in rad/s or deg/s. Without such a line there are four columns: seconds and three
 /// rates in rad/s.

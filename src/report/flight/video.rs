@@ -18,7 +18,7 @@ const TEXT_PX: usize = 54;
 const GAP_PX: usize = 8;
 
 /// Draws the frames of a flight for a video: what the camera sees with what the pipeline makes of it
-/// ([`Overlay`]), the horizon and the arc that was chosen; the danger in the directions around; a map; a few figures.
+/// ([`Overlay`](crate::report::Overlay)), the horizon and the arc that was chosen; the danger in the directions around; a map; a few figures.
 ///
 /// In the map and in the picture of danger red is what is met within 1 s, orange within 2 s, yellow within 4 s, green within
 /// 8 s. In the map the direction of the goal is up, solid things are gray, rings are what the steering takes for obstacles.

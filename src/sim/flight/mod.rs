@@ -1,6 +1,6 @@
 //! The closed loop: what is seen becomes a command, the command moves the vehicle, and the vehicle sees something else.
 //!
-//! A [`Flight`] takes a [`Course`], a vehicle, a sensor and a steering, and goes on frame by frame until the goal is reached
+//! A [`Flight`] takes a [`Course`](crate::sim::Course), a vehicle, a sensor and a steering, and goes on frame by frame until the goal is reached
 //! or something else ends it. The same course and configuration give the same records, bit for bit, on the same machine
 //! and adapter.
 
