@@ -4,6 +4,7 @@ use crate::gpu::Gpu;
 
 /// The device that computes a plan.
 #[derive(Clone)]
+#[allow(clippy::large_enum_variant, reason = "few are made, and each lives as long as an engine")]
 pub enum Backend {
     /// A GPU.
     Gpu(Gpu),

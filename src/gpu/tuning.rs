@@ -99,6 +99,7 @@ fn find(kernel: &Kernel, name: &str) -> Result<&'static Variant> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::kernels::{luma, window_y};

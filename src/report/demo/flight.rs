@@ -30,8 +30,11 @@ pub struct DemoFlight<'a> {
     pub film: &'a FlightFilm,
 }
 
+/// A part of a frame: its name, and its time in milliseconds.
+type Part = (&'static str, fn(&Cost) -> f64);
+
 /// What the parts of a frame cost, and what they are called.
-const PARTS: [(&str, fn(&Cost) -> f64); 3] = [
+const PARTS: [Part; 3] = [
     ("picture rendered", |cost| 1e3 * cost.sensor.as_secs_f64()),
     ("picture to sectors", |cost| 1e3 * cost.pipeline.as_secs_f64()),
     ("sectors to command", |cost| 1e3 * cost.steer.as_secs_f64()),

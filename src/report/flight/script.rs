@@ -23,13 +23,17 @@ pub(super) fn json(film: &FlightFilm, shown: usize, texts: impl Fn(&Still) -> Ve
         ("goal", format!("{:.1}", ground.length_m)),
         ("colours", colours()),
         ("times", list(TIMES.iter().map(|(_, colour)| css(*colour)).chain([css(LATER)]))),
-        ("middle", flat(ground.centre_line_m.iter().map(|place| ground.from_start(*place)))),
+        ("middle", flat(ground.centre_line_m.iter().map(|place| ground.offset_from_start(*place)))),
         ("shapes", shapes(film)),
         ("time", each(&|still| format!("{:.3}", still.record.time_s))),
         ("text", each(&|still| list(texts(still).into_iter().map(quoted)))),
         (
             "at",
-            flat(film.stills.iter().map(|still| ground.from_start(still.record.position_ned_m.truncate()))),
+            flat(
+                film.stills
+                    .iter()
+                    .map(|still| ground.offset_from_start(still.record.position_ned_m.truncate())),
+            ),
         ),
         (
             "nose",
@@ -57,11 +61,11 @@ fn shapes(film: &FlightFilm) -> String {
     };
     let shape = |footprint: &Footprint| match footprint {
         Footprint::Circle(centre, radius_m) => {
-            let [right, ahead] = ground.from_start(*centre);
+            let [right, ahead] = ground.offset_from_start(*centre);
             format!("[{right:.1},{ahead:.1},{radius_m:.2}]")
         }
-        Footprint::Line(ends) => flat(ends.iter().map(|end| ground.from_start(*end))),
-        Footprint::Polygon(corners) => flat(corners.iter().map(|corner| ground.from_start(*corner))),
+        Footprint::Line(ends) => flat(ends.iter().map(|end| ground.offset_from_start(*end))),
+        Footprint::Polygon(corners) => flat(corners.iter().map(|corner| ground.offset_from_start(*corner))),
     };
     list(ground.footprints.iter().filter(near).map(shape))
 }
