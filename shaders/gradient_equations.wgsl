@@ -1,5 +1,5 @@
 // Each pixel's equations for its displacement from the image gradients in x, y and time.
-// Lucas and Kanade 1981: Σ ∇I ∇Iᵀ d = −Σ ∇I I_t.
+// Lucas and Kanade 1981: Σ ∇I ∇Iᵀ d = Σ ∇I (∇I · d₀ − I_t), where d₀ is the flow so far and I_t what it leaves.
 
 struct Params {
     width: u32,
@@ -12,7 +12,8 @@ struct Params {
 @group(0) @binding(2) var<storage, read> certainty: array<f32>;
 @group(0) @binding(3) var<storage, read> warped: array<f32>;
 @group(0) @binding(4) var<storage, read> shown: array<f32>;
-@group(0) @binding(5) var<storage, read_write> equations: array<f32>; // channels: G_xx, G_xy, G_yy, h_x, h_y
+@group(0) @binding(5) var<storage, read> flow: array<f32>; // two channels
+@group(0) @binding(6) var<storage, read_write> equations: array<f32>; // channels: G_xx, G_xy, G_yy, h_x, h_y
 
 const SPAN = vec2u(1u, 1u);
 
@@ -35,7 +36,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let g = vec2f(share * i_x, share * i_y);
     let t = share * i_t;
     let squares = vec3f(g.x * g.x, g.x * g.y, g.y * g.y);
-    let rest = select(vec2f(-g.x * t, -g.y * t), vec2f(t * t, share), params.residual == 1u);
+    let so_far = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
+    let right = dot(g, so_far) - t;
+    let rest = select(vec2f(g.x * right, g.y * right), vec2f(t * t, share), params.residual == 1u);
     // Overflow and NaN become zeros, so that they do not spread.
     let known = dot(abs(squares), vec3f(1.0)) + dot(abs(rest), vec2f(1.0)) <= 1e30;
     if id.x < stride && id.y < params.height {

@@ -2,17 +2,16 @@
 //!
 //! B. Lucas and T. Kanade, An iterative image registration technique with an application to stereo vision, IJCAI 1981;
 //! pyramid and warping after J.-Y. Bouguet, Pyramidal implementation of the Lucas Kanade feature tracker, 2001, here
-//! for every pixel. Each iteration warps the second image by the flow so far and adds the displacement that solves the
-//! equations of the remaining difference. The window is a Gaussian: with increments, a box amplifies waves a little
-//! shorter than itself.
+//! for every pixel. Each iteration warps the second image by the flow so far; each pixel's equations are linear around its
+//! own displacement, so that a window's solution is the one displacement that fits all of it.
 
 use super::coarse_to_fine::{CoarseToFine, Iteration};
-use super::parameter::{self, Choice, Parameter, Parameters, read, within};
+use super::parameter::{self, Choice, Parameter, Parameters, choice_name, choose, read, within};
 use super::pyramid::Pyramid;
-use super::{Estimator, Evidence, Level, Stages, Wanted, levels};
+use super::{Estimator, Evidence, Level, Stages, Wanted, Window, levels};
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::kernels::{solve_increment, confidence, gradient_equations, tables, unweight, warp, premultiply, window_y};
+use crate::kernels::{confidence, gradient_equations, premultiply, solve, tables, unweight, warp, window_y};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Parameters of dense pyramidal Lucas–Kanade flow.
@@ -23,17 +22,21 @@ pub struct LucasKanade {
     pub pyr_scale: f64,
     /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
     pub levels: u32,
-    /// Width of the Gaussian window in pixels, 2 to 1024; its standard deviation is `0.3 · (winsize / 2)` pixels.
+    /// Width of the window in pixels, 2 to 1024. An even one reaches as far as the next odd one.
     pub winsize: u32,
     /// Iterations (warps) on each level, 1 to 1000.
     pub iterations: u32,
+    /// The window's shape.
+    pub window: Window,
 }
 
 impl Default for LucasKanade {
     fn default() -> Self {
-        Self { pyr_scale: 0.5, levels: 3, winsize: 31, iterations: 3 }
+        Self { pyr_scale: 0.5, levels: 3, winsize: 21, iterations: 3, window: Window::Box }
     }
 }
+
+const WINDOWS: [(&str, Window); 2] = [("box", Window::Box), ("gaussian", Window::Gaussian)];
 
 const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
     Parameter { name, value_name, help, choices: &[] }
@@ -47,18 +50,27 @@ impl Parameters for LucasKanade {
         number("levels", "N", "Levels beside the full picture, 0 to 32"),
         number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
         number("iterations", "N", "Iterations on each level, 1 to 1000"),
+        Parameter {
+            name: "window",
+            value_name: "NAME",
+            help: "Shape of the averaging window",
+            choices: &[
+                ("box", "All neighbours count the same"),
+                ("gaussian", "Near neighbours count more"),
+            ],
+        },
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "Half the default's work: 1 iteration"),
-        ("default", "3 iterations, winsize 31, 3 levels"),
-        ("accurate", "Three times the default's work: 10 iterations, winsize 41, 5 levels"),
+        ("default", "3 iterations, winsize 21, 3 levels"),
+        ("accurate", "Three times the default's work: 10 iterations, 5 levels"),
     ];
 
     fn preset(name: &str) -> Option<Self> {
         match name {
             "fast" => Some(Self { iterations: 1, ..Self::default() }),
             "default" => Some(Self::default()),
-            "accurate" => Some(Self { iterations: 10, winsize: 41, levels: 5, ..Self::default() }),
+            "accurate" => Some(Self { iterations: 10, levels: 5, ..Self::default() }),
             _ => None,
         }
     }
@@ -69,6 +81,7 @@ impl Parameters for LucasKanade {
             "levels" => self.levels.to_string(),
             "winsize" => self.winsize.to_string(),
             "iterations" => self.iterations.to_string(),
+            "window" => choice_name(&WINDOWS, self.window).to_owned(),
             _ => return None,
         })
     }
@@ -79,6 +92,7 @@ impl Parameters for LucasKanade {
             "levels" => self.levels = read(Self::LIST, name, value)?,
             "winsize" => self.winsize = read(Self::LIST, name, value)?,
             "iterations" => self.iterations = read(Self::LIST, name, value)?,
+            "window" => self.window = choose(Self::LIST, &WINDOWS, name, value)?,
             _ => return Err(parameter::wrong(Self::LIST, name, value)),
         }
         Ok(())
@@ -105,7 +119,7 @@ impl Estimator for LucasKanade {
             let level = |(k, level)| ["even", "odd"].map(|frames| picture(bufs, k, level, frames));
             levels.iter().enumerate().map(level).collect()
         };
-        let window = tables::window(self.winsize, true);
+        let window = tables::window(self.winsize, self.window == Window::Gaussian);
         let radius = window.len() / 2;
         Box::new(LucasKanadeStages {
             images: pictures(bufs, "image"),
@@ -116,7 +130,7 @@ impl Estimator for LucasKanade {
             }),
             known: (!wanted.certainty).then(|| bufs.constant("equal certainty", vec![1.0; plane.len()])),
             pyramid: Pyramid::new(bufs, size, &levels),
-            coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, true),
+            coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, false),
             warped: bufs.computed("warped", plane),
             shown: bufs.computed("shown", plane),
             equations: bufs.computed("equations", five),
@@ -184,7 +198,7 @@ impl LucasKanadeStages {
             &gradient_equations::KERNEL,
             label,
             gradient_equations::Params { width, height, residual },
-            &[self.images[k][first], self.certainty(k, first), self.warped, self.shown],
+            &[self.images[k][first], self.certainty(k, first), self.warped, self.shown, flow],
             &[(self.equations, five)],
         ));
         steps.push(Step::new(
@@ -235,9 +249,9 @@ impl Stages for LucasKanadeStages {
         let mut steps = self.coarse_to_fine.steps(self.iterations, initial, flow, |steps, iteration| {
             let Iteration { k, level, label, so_far, flow } = iteration;
             self.equations(steps, k, &label, slots, so_far, 0);
-            let params = solve_increment::Params { width: level.size.width, height: level.size.height, radius: self.radius };
-            let inputs = [self.columns, self.window_x, so_far];
-            steps.push(Step::new(&solve_increment::KERNEL, label, params, &inputs, &[(flow, Shape::planar(level.size, 2))]));
+            let params = solve::Params { width: level.size.width, height: level.size.height, radius: self.radius };
+            let inputs = [self.columns, self.window_x];
+            steps.push(Step::new(&solve::KERNEL, label, params, &inputs, &[(flow, Shape::planar(level.size, 2))]));
         });
         if let Some(plane) = self.confidence {
             self.equations(&mut steps, 0, "confidence", slots, flow, 1);

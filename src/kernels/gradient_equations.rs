@@ -1,6 +1,7 @@
 //! Each pixel's equations for its displacement from the image gradients in x, y and time.
 //!
-//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = −Σ ∇I I_t`. The gradients in
+//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = Σ ∇I (∇I · d₀ − I_t)`, where d₀ is the flow so far and I_t
+//! is what it leaves. The gradients in
 //! x and y are Sobel's kernels over 8, that in time is the mean difference of 3 × 3 pixels, over 9: with these factors
 //! they are derivatives, in gray levels per pixel and per frame. A pixel's weight is the least share of its
 //! neighbourhood that both images show.
@@ -25,7 +26,7 @@ params! {
 
 kernel!(
     "gradient_equations" + [],
-    reference(Params; first, certainty, warped, shown) -> (equations),
+    reference(Params; first, certainty, warped, shown, flow) -> (equations),
     cases: cases,
     tolerance: Tolerance {
         absolute: 1e-5,
@@ -42,6 +43,7 @@ fn reference(
     certainty: &[f32],
     warped: &[f32],
     shown: &[f32],
+    flow: &[f32],
     equations: &mut [f32],
 ) {
     let (width, height, stride) = dimensions(p.width, p.height);
@@ -63,7 +65,9 @@ fn reference(
                 let i_t = (1.0 / 9.0) * (a + b + c);
                 let share = nine(&|at| certainty[at] * shown[at]).into_iter().flatten().fold(f32::INFINITY, f32::min);
                 let (g_x, g_y, t) = (share * i_x, share * i_y, share * i_t);
-                let rest = if p.residual == 1 { [t * t, share] } else { [-g_x * t, -g_y * t] };
+                let (u, v) = (flow[2 * y * stride + x], flow[(2 * y + 1) * stride + x]);
+                let right = g_x * u + g_y * v - t;
+                let rest = if p.residual == 1 { [t * t, share] } else { [g_x * right, g_y * right] };
                 let values = [g_x * g_x, g_x * g_y, g_y * g_y, rest[0], rest[1]];
                 let known = values.iter().map(|value| value.abs()).sum::<f32>() <= 1e30;
                 for (channel, value) in channels.chunks_exact_mut(stride).zip(values) {
@@ -84,6 +88,7 @@ fn cases(size: Size) -> Vec<Case> {
                 planes(size, 1, Fill::Textured, [0.0, 1.0], 2),
                 planes(size, 1, fill, [0.0, 255.0], 3),
                 planes(size, 1, Fill::Extreme, [0.0, 1.0], 4),
+                planes(size, 2, fill, [-6.0, 6.0], 5),
             ]
         });
         cases.into_iter().map(move |case| Case { name: format!("{}, residual {residual}", case.name), ..case })

@@ -94,6 +94,7 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&warp::KERNEL, "select(0.0, share, inside)", "share"),
     (&gradient_equations::KERNEL, "0.125 * ((above.i.z", "0.25 * ((above.i.z"),
     (&gradient_equations::KERNEL, "vec2f(t * t, share)", "vec2f(t, share)"),
+    (&gradient_equations::KERNEL, "dot(g, so_far) - t", "dot(g, so_far) + t"),
     (&gradient_equations::KERNEL, "max(y, 1u) - 1u", "y"),
     (&unweight::KERNEL, "select(0.0, value, share >= 1e-3)", "value"),
     (&cell_mean::KERNEL, "select(0.0, 1.0, there)", "1.0"),
