@@ -14,7 +14,8 @@
 //! # fn main() -> viewsphere::Result<()> {
 //! let course = "city".parse::<CourseKind>()?.course(3)?;
 //! let config = DataSetConfig { truths: vec![Truth::Flow, Truth::Nearness], ..DataSetConfig::default() };
-//! let writer = DataSetWriter::new("set", Existing::Refuse, &course, &camera(Size::new(640, 480)), &config)?;
+//! let camera = camera(Size::new(640, 480));
+//! let writer = DataSetWriter::new("set", Existing::Refuse, &course, &camera, &config)?;
 //! let frames = writer.frames();
 //! let summary = writer.write(Backend::Cpu, |written| println!("{written} of {frames}"))?;
 //! println!("{:.1} m in {:.1} s", summary.path_m, summary.duration_s);
