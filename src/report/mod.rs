@@ -19,7 +19,10 @@ pub mod flight;
 mod font;
 #[cfg(feature = "sim")]
 mod footprint;
-#[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "pages of flights use more of it"))]
+#[cfg_attr(
+    not(all(feature = "io", feature = "sim")),
+    allow(dead_code, reason = "the demo's page uses all of it")
+)]
 mod html;
 mod overlay;
 #[cfg(feature = "sim")]

@@ -44,6 +44,10 @@ pub struct Overlay {
 
 /// The layers over an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    not(all(feature = "io", feature = "sim")),
+    allow(dead_code, reason = "pages of flights show them alone")
+)]
 pub(super) enum Layers {
     /// Everything, each sector as a frame.
     All,

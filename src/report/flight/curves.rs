@@ -62,6 +62,7 @@ pub(super) fn sections(report: &FlightReport<'_>) -> String {
 }
 
 /// The time to contact ahead, and the bank, as drawings of this width.
+#[cfg(feature = "io")]
 pub(in crate::report) fn contact_and_bank(records: &[Record], width: f64) -> [String; 2] {
     let end_s = records.last().map_or(FRAME_S, |record| record.time_s.max(FRAME_S));
     let over = Over { records, end_s, width };

@@ -49,6 +49,7 @@ impl Ground {
     }
 
     /// The same of a place, from the start.
+    #[cfg(feature = "io")]
     pub(super) fn offset_from_start(&self, place: DVec2) -> [f64; 2] {
         self.turned(place - self.start_m)
     }

@@ -6,12 +6,15 @@ mod danger;
 mod film;
 mod map;
 pub(super) mod page;
+#[cfg(feature = "io")]
 pub(super) mod player;
+#[cfg(feature = "io")]
 mod script;
 mod video;
 mod views;
 mod way;
 
+#[cfg(feature = "io")]
 pub use film::FlightFilm;
 pub use page::FlightReport;
 pub use video::FlightVideo;

@@ -9,7 +9,9 @@ use crate::error::Result;
 use crate::frame::{Image, PixelFormat, Size};
 use crate::report::canvas::Canvas;
 use crate::report::colours::{ARC, DIM};
-use crate::report::overlay::{Layers, Overlay};
+#[cfg(feature = "io")]
+use crate::report::overlay::Layers;
+use crate::report::overlay::Overlay;
 use crate::report::rectified::Rectified;
 use crate::sim::flight::{Flight, FlightFrame, Record};
 use crate::sim::{RayTable, World, reference_render};
@@ -65,6 +67,7 @@ impl Views {
     }
 
     /// The same, with some layers of it alone.
+    #[cfg(feature = "io")]
     pub(super) fn layers(&mut self, seen: &FlightFrame<'_>, layers: Layers) -> Result<&Image> {
         match (seen.image, seen.cue) {
             (Some(image), Some(cue)) => self.overlay.draw_layers(&image.frame()?, cue, layers),
