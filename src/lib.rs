@@ -146,6 +146,7 @@
 //! | reports | `report` | colours, overlays, videos and pages (feature `report`) |
 //! | simulation | `sim` | worlds with exact truth, vehicles, flights, campaigns, data sets (feature `sim`) |
 //! | messages | `wire` | cues as JSON (feature `serde`) |
+//! | checks | [`crosscheck`], [`benchmark`] | a GPU's values against the CPU's; times of frames and kernels |
 //! | intake | [`live`] | frames and gyro samples as they arrive, with their times |
 //! | steering | [`steer`] | from sectors to bank and climb |
 //! | cues | [`pipeline`] | from frames and a gyro to cues |
@@ -207,10 +208,12 @@
 )]
 mod atomic_file;
 mod backend;
+pub mod benchmark;
 pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod cpu;
+pub mod crosscheck;
 pub mod engine;
 pub mod error;
 pub mod eval;

@@ -1,17 +1,16 @@
 //! `viewsphere bench`: the time per frame and per kernel, compared with the speed of a plain copy.
 
-mod copy;
-mod measure;
-mod pipeline;
 mod serve;
 mod show;
 
 use clap::Args;
+use serde::Serialize;
 
-use self::measure::BenchFigures;
 use super::backend::BackendArgs;
 use super::flow_args::FlowArgs;
 use super::{Outcome, print};
+use crate::backend::Backend;
+use crate::benchmark;
 use crate::error::{Error, Result};
 use crate::flow::Algorithm;
 use crate::frame::Size;
@@ -57,37 +56,28 @@ impl Bench {
         if self.serve {
             return serve::serve(&self.backend).map(|()| Outcome::Done);
         }
-        let config = self.flow.algorithm()?;
         if !(2..=100_000).contains(&self.frames) {
             return Err(Error::parameter("--frames", self.frames, "2 to 100000"));
         }
-        if self.pipeline {
-            return self.pipelines(&config);
+        match self.pipeline {
+            true => self.each(benchmark::pipelines, show::pipelines),
+            false => self.each(benchmark::stream, show::stream),
         }
-        let mut results: Vec<BenchFigures> = Vec::new();
-        for backend in self.backend.open_all()? {
-            for &size in &self.size {
-                let figures = measure::measure(&backend, size, &config, self.frames)?;
-                if !self.json {
-                    print::text(&show::text(&figures))?;
-                    print::text("")?;
-                }
-                results.push(figures);
-            }
-        }
-        if self.json {
-            print::json(&results)?;
-        }
-        Ok(Outcome::Done)
     }
 
-    fn pipelines(&self, flow: &Algorithm) -> Result<Outcome> {
+    /// Measures on each backend at each size, and prints each result when it is there; as JSON all of them at the end.
+    fn each<T: Serialize>(
+        &self,
+        measure: impl Fn(&Backend, Size, &Algorithm, u32) -> Result<T>,
+        text: impl Fn(&T) -> String,
+    ) -> Result<Outcome> {
+        let algorithm = self.flow.algorithm()?;
         let mut results = Vec::new();
         for backend in self.backend.open_all()? {
             for &size in &self.size {
-                let figures = pipeline::measure(&backend, size, flow, self.frames)?;
+                let figures = measure(&backend, size, &algorithm, self.frames)?;
                 if !self.json {
-                    print::text(&pipeline::text(&figures))?;
+                    print::text(&text(&figures))?;
                     print::text("")?;
                 }
                 results.push(figures);

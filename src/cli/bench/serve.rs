@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::measure::timed;
 use crate::backend::Backend;
+use crate::benchmark::timed;
 use crate::cli::backend::{BackendArg, BackendArgs};
 use crate::cli::{input, print};
 use crate::engine::{Config, Engine};

@@ -1,11 +1,11 @@
 //! The benchmark's results as text.
 
-use super::measure::BenchFigures;
+use crate::benchmark::{PipelineFigures, StreamFigures};
 use crate::cli::print::table;
 
 /// The figures of one backend at one frame size, as text.
-pub(super) fn text(figures: &BenchFigures) -> String {
-    let BenchFigures { startup, frame_ms, .. } = figures;
+pub(super) fn stream(figures: &StreamFigures) -> String {
+    let StreamFigures { startup, frame_ms, .. } = figures;
     let mut text = format!(
         "{}×{} on {}, {} frames\n\
          frame      median {:.2} ms, p99 {:.2} ms, best {:.2} ms; {:.0} frames/s\n\
@@ -48,4 +48,21 @@ pub(super) fn text(figures: &BenchFigures) -> String {
         "all kernels {sum:.2} ms by the {} clock\n",
         if figures.clock == "gpu" { "GPU's" } else { "host's" }
     )
+}
+
+/// The figures of whole pipelines, as text.
+pub(super) fn pipelines(figures: &PipelineFigures) -> String {
+    let head = ["", "median ms", "p99 ms", "of the stream", "of the pairs"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for contender in &figures.contenders {
+        rows.push(vec![
+            contender.name.to_owned(),
+            format!("{:.2}", contender.ms.median),
+            format!("{:.2}", contender.ms.p99),
+            format!("{:.2}", contender.of_stream),
+            format!("{:.2}", contender.of_pairs),
+        ]);
+    }
+    let PipelineFigures { width, height, backend, frames, .. } = figures;
+    format!("{width}×{height} on {backend}, {frames} frames, interleaved\n{}", table(&rows))
 }

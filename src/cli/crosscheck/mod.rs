@@ -1,6 +1,5 @@
 //! `viewsphere crosscheck`: compares the two backends step by step, on the user's machine and images.
 
-mod run;
 mod show;
 
 use std::path::PathBuf;
@@ -11,6 +10,7 @@ use super::backend::options;
 use super::flow_args::FlowArgs;
 use super::{Outcome, input, print};
 use crate::camera::{Camera, Framing, Lens};
+use crate::crosscheck::crosscheck;
 use crate::error::{Error, Result};
 use crate::eval::Scene;
 use crate::flow::{self, Algorithm, FlowOptions};
@@ -83,7 +83,7 @@ impl Crosscheck {
                 flow::plan(&algorithm, pair[0].size, pair[0].format, options)?
             }
         };
-        let report = run::run(&gpu, &plan, &pair, certainty.as_ref(), self.bounds)?;
+        let report = crosscheck(&gpu, &plan, &pair, certainty.as_ref(), self.bounds)?;
         if self.json {
             print::json(&report)?;
         } else {

@@ -1,7 +1,7 @@
 //! The comparison as text.
 
-use super::run::{Report, Spread, StepFigures};
 use crate::cli::print::table;
+use crate::crosscheck::{Report, Spread, StepFigures};
 
 /// The results as tables: the worst step of each kernel, or every step.
 pub(super) fn text(report: &Report, steps: bool) -> String {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::measure::timed;
+use super::times::timed;
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::quantile::median;

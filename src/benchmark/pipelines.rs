@@ -3,12 +3,11 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use serde::Serialize;
 
-use super::measure::Times;
+use super::stream::check_frames;
+use super::times::Times;
 use crate::backend::Backend;
 use crate::camera::{Camera, Lens};
-use crate::cli::print::table;
 use crate::engine::{Config, Engine};
 use crate::error::Result;
 use crate::eval::Scene;
@@ -26,36 +25,50 @@ const FRAMES: u32 = 6;
 const RATE_HZ: f64 = 30.0;
 
 /// One of the computations that are compared.
-#[derive(Debug, Serialize)]
-pub(super) struct Contender {
-    pub(super) name: &'static str,
-    pub(super) ms: Times,
-    /// The median of the per-frame ratios to the flow alone: in a stream (`of_stream`) and of separate pairs
-    /// (`of_pairs`).
-    pub(super) of_stream: f64,
-    pub(super) of_pairs: f64,
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Contender {
+    /// The computation's name.
+    pub name: &'static str,
+    /// The time of a frame.
+    pub ms: Times,
+    /// The median of the per-frame ratios to the flow alone, in a stream.
+    pub of_stream: f64,
+    /// The median of the per-frame ratios to the flow alone, of separate pairs.
+    pub of_pairs: f64,
 }
 
 /// The figures of one backend at one frame size.
-#[derive(Debug, Serialize)]
-pub(super) struct PipelineFigures {
-    pub(super) backend: String,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) frames: u32,
-    pub(super) contenders: Vec<Contender>,
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct PipelineFigures {
+    /// The name of the GPU adapter, or of the CPU backend.
+    pub backend: String,
+    /// The frames' width in pixels.
+    pub width: u32,
+    /// The frames' height in pixels.
+    pub height: u32,
+    /// The number of frames timed.
+    pub frames: u32,
+    /// The computations, the flow alone first.
+    pub contenders: Vec<Contender>,
 }
 
 /// What a contender runs per frame.
 type FrameFn<'a> = Box<dyn FnMut(u32) -> Result<()> + 'a>;
 
-/// Measures one backend at one size.
-pub(super) fn measure(
+/// Times whole pipelines on one backend at one frame size, interleaved frame by frame with the flow alone.
+///
+/// # Errors
+/// [`Error::Parameter`](crate::Error::Parameter) for a number of frames outside 2 to 100 000, and for a size or an algorithm
+/// out of range; what the device fails with.
+pub fn pipelines(
     backend: &Backend,
     size: Size,
     algorithm: &Algorithm,
     frames: u32,
 ) -> Result<PipelineFigures> {
+    check_frames(frames)?;
     let scene = Scene::new(size)?;
     let images: Vec<Image> = (0..FRAMES).map(|number| scene.frame(number)).collect();
     let image = |number: u32| images[(number % FRAMES) as usize].frame();
@@ -128,21 +141,4 @@ fn camera(size: Size) -> Result<Camera> {
     let [width, height] = [size.width, size.height].map(f64::from);
     let lens = Lens::new(&[-0.28, 0.075, 3e-4, -2e-4, 0.0])?;
     Ok(Camera { size, f_u: 0.53 * width, f_v: 0.53 * width, u_0: 0.504 * width, v_0: 0.492 * height, lens })
-}
-
-/// The figures as text.
-pub(super) fn text(figures: &PipelineFigures) -> String {
-    let head = ["", "median ms", "p99 ms", "of the stream", "of the pairs"];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for contender in &figures.contenders {
-        rows.push(vec![
-            contender.name.to_owned(),
-            format!("{:.2}", contender.ms.median),
-            format!("{:.2}", contender.ms.p99),
-            format!("{:.2}", contender.of_stream),
-            format!("{:.2}", contender.of_pairs),
-        ]);
-    }
-    let PipelineFigures { width, height, backend, frames, .. } = figures;
-    format!("{width}×{height} on {backend}, {frames} frames, interleaved\n{}", table(&rows))
 }

@@ -1,82 +1,41 @@
-//! The comparison of the two backends.
+//! Comparison of the two executors, step by step: whether a GPU computes what the CPU computes.
+//!
+//! Each step of a plan runs on both with the same inputs (the CPU's), and every value must lie within the bound that its
+//! kernel states. Beside that, each side computes the whole plan on its own, so that errors accumulate.
+//!
+//! ```no_run
+//! use viewsphere::crosscheck::crosscheck;
+//! use viewsphere::eval::Scene;
+//! use viewsphere::flow::{self, Algorithm, FlowOptions};
+//! use viewsphere::frame::{PixelFormat, Size};
+//! use viewsphere::gpu::{Gpu, GpuOptions};
+//!
+//! # fn main() -> viewsphere::Result<()> {
+//! let size = Size::new(640, 480);
+//! let scene = Scene::new(size)?;
+//! let plan = flow::plan(&Algorithm::default(), size, PixelFormat::Gray8, FlowOptions::default())?;
+//! let gpu = Gpu::new(&GpuOptions::default())?;
+//! let report = crosscheck(&gpu, &plan, &[scene.frame(0), scene.frame(1)], None, 1.0)?;
+//! assert_eq!(report.breaches, 0, "{:?}", report.first_beyond_bound);
+//! # Ok(())
+//! # }
+//! ```
+
+mod report;
 
 use glam::{DMat3, DVec3};
-use serde::Serialize;
+pub use report::{Own, Report, Spread, StepFigures, Worst};
 
 use crate::backend::Backend;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::eval::endpoint_error;
 use crate::frame::{Image, Plane};
 use crate::gpu::Gpu;
 use crate::kernel::Bound;
 use crate::kernels::compare::{Difference, POISON, compare};
 use crate::plan::{BufId, Content, Given, Outputs, Plan, Shape, Step, Value};
-use crate::quantile::nearest_rank;
 use crate::runner::Runner;
 use crate::sphere::{Heading, Motion};
-
-/// The results of a crosscheck.
-#[derive(Debug, Serialize)]
-pub(super) struct Report {
-    pub(super) adapter: String,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    /// The number of values beyond their bound, over all steps.
-    pub(super) breaches: usize,
-    pub(super) steps: Vec<StepFigures>,
-    /// The difference of the two flow fields, each computed independently, in pixels.
-    pub(super) flow: Spread,
-    /// In the independent runs: the first step with any difference, and the first with one beyond its kernel's bound.
-    pub(super) first_difference: Option<String>,
-    pub(super) first_beyond_bound: Option<String>,
-}
-
-/// The figures of one output of one step.
-#[derive(Debug, Serialize)]
-pub(super) struct StepFigures {
-    pub(super) kernel: &'static str,
-    pub(super) step: String,
-    pub(super) output: &'static str,
-    #[serde(flatten)]
-    pub(super) spread: Spread,
-    pub(super) bound_absolute: f32,
-    pub(super) bound_relative: f32,
-    /// Statistics of the per-value bounds, where the kernel gives them.
-    pub(super) bound_own: Option<Own>,
-    pub(super) reason: &'static str,
-    /// The largest ratio of a value's difference to its bound.
-    pub(super) share_of_bound: f32,
-    pub(super) values: usize,
-    pub(super) breaches: usize,
-    pub(super) worst: Option<Worst>,
-}
-
-/// Statistics of the per-value bounds of one output.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct Own {
-    pub(super) median: f32,
-    pub(super) p999: f32,
-    pub(super) max: f32,
-}
-
-/// Statistics of the differences between two sets of values.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(super) struct Spread {
-    pub(super) max: f32,
-    pub(super) p999: f32,
-    pub(super) mean: f64,
-}
-
-/// The value that exceeds its bound the most.
-#[derive(Debug, Serialize)]
-pub(super) struct Worst {
-    pub(super) column: usize,
-    pub(super) row: usize,
-    pub(super) channel: usize,
-    pub(super) cpu: f32,
-    pub(super) gpu: f32,
-    pub(super) bound: f32,
-}
 
 /// The CPU, and the GPU twice: with its inputs corrected before every step, and running independently.
 struct Sides<'a> {
@@ -88,14 +47,25 @@ struct Sides<'a> {
     factor: f32,
 }
 
-/// Runs the plan on a pair of frames on all sides, with every bound multiplied by `factor`.
-pub(super) fn run(
+/// Compares a GPU with the CPU on a plan and a pair of frames.
+///
+/// `certainty` is the certainty of both frames, 0 to 1, in a plane of their size; it counts only where the plan has the
+/// input `certainty`. Where it has the input `motion`, a rotation of 0.04 rad about a fixed axis is given. `factor` multiplies
+/// every bound: 1 for the kernels' own, 0 to demand identical bits.
+///
+/// # Errors
+/// [`Error::Parameter`] for a factor that is negative, NaN or infinite; what the frames, the certainty or the device fail
+/// with. A breach of a bound is no error: see [`Report::breaches`].
+pub fn crosscheck(
     gpu: &Gpu,
     plan: &Plan,
     pair: &[Image; 2],
     certainty: Option<&Plane>,
     factor: f32,
 ) -> Result<Report> {
+    if !(factor.is_finite() && factor >= 0.0) {
+        return Err(Error::parameter("factor", factor, "a finite number of 0 or more"));
+    }
     let backend = Backend::Gpu(gpu.clone());
     let mut sides = Sides {
         plan,
@@ -208,79 +178,5 @@ impl Sides<'_> {
     fn difference(&self, side: &Runner, id: BufId, shape: Shape, within: &Bound) -> Result<Difference> {
         let (expected, found) = (self.cpu.read(id, shape.len())?, side.read(id, shape.len())?);
         Ok(compare(&expected, &found, within))
-    }
-}
-
-impl StepFigures {
-    fn new(
-        step: &Step,
-        name: String,
-        output: &'static str,
-        shape: Shape,
-        within: Bound,
-        found: &Difference,
-    ) -> Self {
-        let worst = found.worst.map(|breach| {
-            let [column, row, channel] = shape.place(breach.index);
-            Worst { column, row, channel, cpu: breach.expected, gpu: breach.found, bound: breach.bound }
-        });
-        Self {
-            kernel: step.kernel.name,
-            step: name,
-            output,
-            spread: Spread::from(found),
-            bound_absolute: within.absolute,
-            bound_relative: within.relative,
-            bound_own: Own::of(within.own),
-            reason: step.kernel.tolerance.reason,
-            share_of_bound: found.share,
-            values: found.count,
-            breaches: found.breaches,
-            worst,
-        }
-    }
-}
-
-impl Own {
-    fn of(mut bounds: Vec<f32>) -> Option<Self> {
-        bounds.sort_unstable_by(f32::total_cmp);
-        let rank = |thousandths| nearest_rank(&bounds, thousandths);
-        Some(Self { median: rank(500)?, p999: rank(999)?, max: rank(1000)? })
-    }
-}
-
-impl From<&Difference> for Spread {
-    fn from(d: &Difference) -> Self {
-        Self { max: d.max, p999: d.p999, mean: d.mean }
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-    use crate::flow::{self, FlowOptions};
-    use crate::frame::{PixelFormat, Size};
-    use crate::plan::Shape;
-
-    /// Tests the check itself: it finds and locates a value that differs, and one that was never written.
-    #[test]
-    fn a_breach_is_counted_and_placed() {
-        let size = Size::new(5, 3);
-        let options = FlowOptions::default();
-        let plan = flow::plan(&flow::Algorithm::default(), size, PixelFormat::Gray8, options).unwrap();
-        let step = &plan.ingest[0][0];
-        let shape = Shape::planar(size, 1);
-        let expected = vec![1.0; shape.len()];
-        let mut found = expected.clone();
-        found[8 * 2 + 3] = 2.0;
-        found[8] = POISON;
-        let bound = Bound::default();
-        let difference = compare(&expected, &found, &bound);
-        let figures = StepFigures::new(step, "frame".to_owned(), "gray", shape, bound, &difference);
-        assert_eq!((figures.breaches, figures.kernel), (2, "luma"));
-        let worst = figures.worst.unwrap();
-        assert_eq!((worst.column, worst.row, worst.channel, worst.cpu), (0, 1, 0, 1.0));
-        assert!(figures.spread.max.is_infinite() && worst.gpu.is_nan());
     }
 }

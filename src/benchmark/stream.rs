@@ -1,19 +1,17 @@
-//! The measurements.
+//! The time of a frame of a stream, and of each kernel in it.
 
 use std::collections::HashMap;
-use std::time::Instant;
-
-use serde::Serialize;
 
 use super::copy;
+use super::figures::{KernelFigures, Startup, StreamFigures};
+use super::times::{Times, timed};
 use crate::backend::Backend;
 use crate::engine::{Config, Engine};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::eval::Scene;
 use crate::flow::{self, Algorithm};
 use crate::frame::{Image, Size};
 use crate::plan::{BufId, Plan};
-use crate::quantile::{nearest_rank, sorted};
 use crate::stream::{StreamConfig, TimeSource};
 
 /// Frames of the synthetic scene, played forwards and backwards.
@@ -21,60 +19,16 @@ const FRAMES: u32 = 6;
 /// Frames before the measurement begins.
 const WARM_UP: u32 = 4;
 
-/// The figures of one backend at one frame size.
-#[derive(Debug, Serialize)]
-pub(super) struct BenchFigures {
-    pub(super) backend: String,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) frames: u32,
-    pub(super) startup: Startup,
-    pub(super) frame_ms: Times,
-    /// The total size of the engine's buffers.
-    pub(super) buffer_bytes: u64,
-    /// The throughput of a plain copy, bytes read plus bytes written.
-    pub(super) copy_gb_s: f64,
-    /// The clock behind the kernels' times: `gpu`, `host`, or `none` where the device has none.
-    pub(super) clock: &'static str,
-    pub(super) kernels: Vec<KernelFigures>,
-}
-
-/// Costs paid once.
-#[derive(Debug, Serialize)]
-pub(super) struct Startup {
-    /// Creating buffers, pipelines and bind groups.
-    pub(super) engine_ms: f64,
-    /// The first frame and the first pair, including the work that the driver defers until then.
-    pub(super) first_frame_ms: f64,
-    pub(super) first_pair_ms: f64,
-}
-
-/// Statistics of repeated measurements, in milliseconds.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct Times {
-    pub(super) median: f64,
-    pub(super) p99: f64,
-    pub(super) min: f64,
-}
-
-/// The figures of one kernel: all of its steps in a frame, summed.
-#[derive(Debug, Serialize)]
-pub(super) struct KernelFigures {
-    pub(super) kernel: &'static str,
-    pub(super) steps: usize,
-    pub(super) ms: Times,
-    pub(super) bytes: u64,
-    pub(super) gb_s: f64,
-    pub(super) share_of_copy: f64,
-}
-
-/// Measures one backend at one size.
-pub(super) fn measure(
-    backend: &Backend,
-    size: Size,
-    algorithm: &Algorithm,
-    frames: u32,
-) -> Result<BenchFigures> {
+/// Times a stream of synthetic frames on one backend at one frame size.
+///
+/// The time of a frame includes its upload and the readback of the flow. Kernels are timed in a second run: on the GPU by its
+/// own clock, on the CPU around each step; kernels that only an option uses are timed in a third run.
+///
+/// # Errors
+/// [`Error::Parameter`] for a number of frames outside 2 to 100 000, and for a size or an algorithm out of range; what the
+/// device fails with.
+pub fn stream(backend: &Backend, size: Size, algorithm: &Algorithm, frames: u32) -> Result<StreamFigures> {
+    check_frames(frames)?;
     let config = Config { algorithm: algorithm.clone(), ..Config::default() };
     let (engine, engine_ms) = timed(|| Engine::new(backend.clone(), size, &config));
     let mut engine = engine?;
@@ -108,7 +62,7 @@ pub(super) fn measure(
     let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     let known: Vec<&str> = kernels.iter().map(|figures| figures.kernel).collect();
     kernels.extend(optional.into_iter().filter(|figures| !known.contains(&figures.kernel)));
-    Ok(BenchFigures {
+    Ok(StreamFigures {
         backend: name,
         width: size.width,
         height: size.height,
@@ -186,6 +140,14 @@ fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
     moved
 }
 
+/// Checks the number of frames to time.
+pub(super) fn check_frames(frames: u32) -> Result<()> {
+    match (2..=100_000).contains(&frames) {
+        true => Ok(()),
+        false => Err(Error::parameter("frames", frames, "2 to 100000")),
+    }
+}
+
 /// The length of the plan's largest buffer, in values.
 fn largest(plan: &Plan) -> usize {
     plan.bufs.iter().map(|buf| buf.len).max().unwrap_or(1)
@@ -195,20 +157,6 @@ fn played(images: &[Image], number: u32) -> &Image {
     let turn = images.len() - 1;
     let at = number as usize % (2 * turn);
     &images[if at > turn { 2 * turn - at } else { at }]
-}
-
-pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
-    let start = Instant::now();
-    let result = work();
-    (result, start.elapsed().as_secs_f64() * 1e3)
-}
-
-impl Times {
-    pub(super) fn new(ms: Vec<f64>) -> Self {
-        let ms = sorted(ms);
-        let rank = |thousandths| nearest_rank(&ms, thousandths).unwrap_or(f64::NAN);
-        Self { median: rank(500), p99: rank(990), min: rank(0) }
-    }
 }
 
 #[cfg(test)]
@@ -240,11 +188,5 @@ mod tests {
         assert!(weights < 100, "{weights}");
         let planes = 4 * 4 * (64 * 64 + 32 * 32);
         assert_eq!(moved["expansion_y"], (2, planes + 2 * 4 * weights));
-    }
-
-    #[test]
-    fn percentiles_are_of_the_nearest_rank() {
-        let times = Times::new((1..=200).rev().map(f64::from).collect());
-        assert_eq!((times.min, times.median, times.p99), (1.0, 100.0, 198.0));
     }
 }
