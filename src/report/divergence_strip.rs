@@ -53,8 +53,8 @@ pub fn divergence_strip(divergences: &Divergences, side: u32, time_s: f64) -> Re
     canvas.text([4.0, 4.0], "measured", TEXT, 2);
     canvas.text([(panel_width + GAP + 4) as f64, 4.0], "true", TEXT, 2);
     canvas.text([bar[0] as f64, below], &format!("-{FULL_DIVERGENCE_HZ}/s"), DIM, 2);
-    canvas.text([0.5 * width as f64 - 6.0, below], "0", DIM, 2);
-    canvas.text([bar[1] as f64 - 42.0, below], &format!("+{FULL_DIVERGENCE_HZ}/s"), DIM, 2);
+    canvas.text([0.5 * width as f64 - 4.5, below], "0", DIM, 2);
+    canvas.text([bar[1] as f64 - 30.0, below], &format!("+{FULL_DIVERGENCE_HZ}/s"), DIM, 2);
     canvas.text([4.0, below], &format!("{time_s:.2} s"), DIM, 2);
     Ok(image)
 }

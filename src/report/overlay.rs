@@ -209,7 +209,7 @@ impl Overlay {
                 line(&mut self.image, moved(from), moved(to), colour);
             }
         }
-        let above = [a[0], a[1] - 8.0 * scale as f64];
+        let above = [a[0], a[1] - 9.0 * scale as f64];
         text(&mut self.image, above, &format!("{:.1}s", threat.time_s), colour, scale);
     }
 

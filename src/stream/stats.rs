@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::plan::Plan;
+use crate::quantile::nearest_rank;
 
 /// Number of latencies over which percentiles are computed.
 const WINDOW: usize = 1024;
@@ -85,12 +86,8 @@ impl Window {
         let sorted = &mut sorted[..count];
         sorted.copy_from_slice(&self.nanos[..count]);
         sorted.sort_unstable();
-        // The nearest rank: the smallest latency that this percentage of frames does not exceed.
-        let rank = |percent: usize| {
-            let at = (count * percent).div_ceil(100).max(1) - 1;
-            Duration::from_nanos(sorted.get(at).copied().unwrap_or(0))
-        };
-        Latency { count, p50: rank(50), p90: rank(90), p99: rank(99), max: rank(100) }
+        let rank = |thousandths| Duration::from_nanos(nearest_rank(sorted, thousandths).unwrap_or(0));
+        Latency { count, p50: rank(500), p90: rank(900), p99: rank(990), max: rank(1000) }
     }
 }
 

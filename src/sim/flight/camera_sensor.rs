@@ -37,7 +37,11 @@ impl CameraSensor {
         mut random: Random,
     ) -> Result<Self> {
         let renderer = Renderer::new(renderer, &config.camera, world, &config.renderer)?;
-        let pipeline = Pipeline::new(flow, &config.camera, &config.pipeline)?;
+        let mut pipeline = config.pipeline.clone();
+        // What the comparison with the true flow reads.
+        pipeline.fields.looming |= config.measure;
+        pipeline.fields.cells |= config.measure;
+        let pipeline = Pipeline::new(flow, &config.camera, &pipeline)?;
         let size = config.camera.size;
         let image = Image { size, format: PixelFormat::Gray8, data: vec![0; size.pixels()] };
         let seed = random.next_u64();

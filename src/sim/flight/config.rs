@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::fault::Fault;
 use super::sensor::{FlowNoise, Sensor};
-use crate::camera::{Camera, Lens};
+use crate::camera::{Camera, FRD_FROM_CAMERA, Lens};
 use crate::error::{Error, Result, in_ranges};
 use crate::flow::{Algorithm, Farneback, Update, Window};
 use crate::frame::Size;
@@ -17,46 +17,47 @@ use crate::steer::SteerParams;
 /// The most frames that a command may act after its exposure: one second of them.
 pub const MAX_LATENCY_FRAMES: u32 = 30;
 
-/// How a flight is flown.
+/// The configuration of a flight.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FlightConfig {
-    /// What flies.
+    /// The vehicle.
     pub body: Body,
-    /// Its airspeed, m/s: 0.1 to 1000 of a turn, and where an airframe flies level
+    /// The airspeed, m/s: 0.1 to 1000 of a turn, and where an airframe flies level
     /// ([`AirframeParams::level_speeds_m_s`](crate::sim::vehicle::AirframeParams::level_speeds_m_s)).
     pub speed_m_s: f64,
-    /// The radius of the ball around its middle that must stay free, metres, above 0: half the wing span.
+    /// The radius of the ball around the vehicle that must stay free, metres, above 0: half the wing span.
     pub radius_m: f64,
-    /// What the steering sees by.
+    /// The sensor that the steering uses.
     pub sensor: Sensor,
-    /// The camera, at the body's origin, its axis along the body's x axis.
+    /// The camera, at the body's origin, with its optical axis along the body's x axis.
     pub camera: Camera,
-    /// How its pictures come about.
+    /// How its images are rendered.
     pub renderer: RendererConfig,
-    /// How they are looked at. The gyro is set by the flight.
+    /// The pipeline that computes cues from the images. Its gyro is that of the simulated body, with samples in the body's
+    /// frame; without one the rotation stays in the flow, which only [`Sensor::Images`] allows.
     pub pipeline: PipelineConfig,
-    /// How it is steered by what they show. What steering is told of the aircraft follows from the body and the latency.
+    /// The parameters of the steering. Its model of the aircraft follows from the body and the latency.
     pub steer: SteerParams,
     /// Frames from an exposure until its command acts, at most [`MAX_LATENCY_FRAMES`].
     pub latency_frames: u32,
-    /// What the gyro gets wrong.
+    /// The errors of the gyro.
     pub gyro: GyroErrors,
-    /// The share by which the airspeed sensor may be wrong, 0 or above and below 1.
+    /// The relative error of the airspeed sensor, 0 or above and below 1.
     pub airspeed_error: f64,
-    /// What vanes for the direction of motion get wrong; none where that is taken from the flow itself.
+    /// The errors of vanes for the direction of motion; None where the flow itself gives that direction.
     pub vanes: Option<VaneErrors>,
-    /// Where the air moves to, m/s NED, each axis within ±[`MAX_WIND_M_S`](crate::sim::vehicle::MAX_WIND_M_S).
+    /// The wind, the velocity of the air, in m/s, north-east-down, each axis within ±[`MAX_WIND_M_S`](crate::sim::vehicle::MAX_WIND_M_S).
     pub wind_ned_m_s: glam::DVec3,
-    /// Gusts, if there are any.
+    /// The gusts, if any.
     pub gusts: Option<Gusts>,
-    /// What [`Sensor::NoisyFlow`] does to the true flow.
+    /// The errors that [`Sensor::NoisyFlow`] adds to the true flow.
     pub flow_noise: FlowNoise,
-    /// What goes wrong, and when.
+    /// The faults, each with its times.
     pub faults: Vec<Fault>,
-    /// Whether each frame's flow is held against the true one. Only with [`Sensor::Images`].
+    /// Whether each frame's flow is compared with the true one. Only with [`Sensor::Images`].
     pub measure: bool,
-    /// A flight that takes this many times as long as the straight way is given up, at least 1.
+    /// A flight is given up after this many times the duration of the straight way, at least 1.
     pub patience: f64,
 }
 
@@ -70,8 +71,8 @@ impl Default for FlightConfig {
             camera: camera(Size::new(320, 240)),
             renderer: RendererConfig::default(),
             pipeline: PipelineConfig {
-                // A box takes in what is behind a thin trunk, and shows it a sixth farther away than it is; of increments a
-                // wide Gaussian a few per cent. One iteration finds what is left of a primed search.
+                // A box window averages a thin trunk with its background, which shows the trunk a sixth too far away; a
+                // wide Gaussian over increments, a few per cent. After priming, one iteration finds the rest.
                 algorithm: Algorithm::from(Farneback {
                     winsize: 21,
                     iterations: 1,
@@ -88,7 +89,11 @@ impl Default for FlightConfig {
                     window: 1,
                     ..Sphere::default()
                 },
-                gyro: Some(GyroConfig::default()),
+                // The gyro measures in the body's frame, whose x axis the camera looks along.
+                gyro: Some(GyroConfig {
+                    camera_from_gyro: FRD_FROM_CAMERA.transpose(),
+                    ..GyroConfig::default()
+                }),
                 max_remaining_rad_s: 0.1,
                 ..PipelineConfig::default()
             },
@@ -116,7 +121,15 @@ pub fn camera(size: Size) -> Camera {
 }
 
 impl FlightConfig {
-    /// When a flight of this course is given up, seconds.
+    /// The gyro, which every sensor but [`Sensor::Images`] needs.
+    pub(super) fn required_gyro(&self) -> Result<GyroConfig> {
+        self.pipeline.gyro.ok_or_else(|| {
+            let found = format_args!("none with the sensor {}", self.sensor);
+            Error::parameter("pipeline.gyro", found, format_args!("a gyro, or the sensor {}", Sensor::Images))
+        })
+    }
+
+    /// The time after which a flight of this course is given up, seconds.
     pub(super) fn longest_s(&self, course: &Course) -> f64 {
         self.patience * course.length_m / self.speed_m_s
     }
@@ -138,8 +151,9 @@ impl FlightConfig {
     /// Checks every parameter's range.
     ///
     /// # Errors
-    /// [`Error::Parameter`], naming the first one that is out of range, also for a fault that the sensor shows nothing of,
-    /// for a speed at which the body cannot fly level, and for a camera whose picture has no view without its lens.
+    /// [`Error::Parameter`], naming the first one that is out of range; also for a fault that the sensor cannot show, for a
+    /// speed at which the body cannot fly level, for a camera without an undistorted view, and for a sensor other than
+    /// [`Sensor::Images`] without a gyro.
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         self.pipeline.validate()?;
@@ -163,6 +177,9 @@ impl FlightConfig {
                 format_args!("on with the sensor {}", self.sensor),
                 expected,
             ));
+        }
+        if self.sensor != Sensor::Images {
+            self.required_gyro()?;
         }
         self.body.validate(self.speed_m_s)?;
         self.gyro.validate()?;

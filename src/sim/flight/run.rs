@@ -10,7 +10,7 @@ use super::cost::Cost;
 use super::fault::FaultKind;
 use super::perception::{Perception, SensorInput};
 use super::record::Record;
-use super::sensor_model::{SensorModel, gyro_config};
+use super::sensor_model::SensorModel;
 use super::summary::{Outcome, Summary, Tally};
 use crate::backend::Backend;
 use crate::camera::{Camera, FRD_FROM_CAMERA};
@@ -36,7 +36,7 @@ pub struct Flight {
     airspeed: AirspeedModel,
     vanes: Option<VaneModel>,
     frame: u64,
-    /// Decided, and not acting yet.
+    /// Commands that are decided and do not act yet, the oldest first.
     waiting: VecDeque<Command>,
     least_clearance_m: f64,
     tally: Tally,
@@ -44,33 +44,29 @@ pub struct Flight {
     states: Vec<VehicleState>,
 }
 
-/// What can be looked at of a frame while the flight goes on.
+/// A frame of a flight, for whoever watches it.
 #[derive(Clone, Copy)]
 pub struct FlightFrame<'a> {
-    /// The picture, if the sensor is a camera.
+    /// The image, if the sensor is a camera.
     pub image: Option<&'a Image>,
-    /// What the pipeline says, if there is one and it says something.
+    /// The pipeline's cue, if there is one.
     pub cue: Option<&'a Cue<'a>>,
-    /// What became of it.
+    /// The steering after its decision.
     pub steering: &'a Steering,
     /// The divergence in each cell of the view, where it is [measured](FlightConfig::measure).
     pub divergences: Option<&'a Divergences>,
-    /// What is kept.
+    /// The frame's record.
     pub record: &'a Record,
 }
 
 impl Flight {
-    /// A flight from the beginning of a course. The first backend draws the pictures, the second one computes the flow.
+    /// A flight from the start of a course. The first backend renders the images, the second one computes the flow.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for what is out of range, also for a fault that begins after the flight is
-    /// given up; as [`Renderer::new`](crate::sim::Renderer::new) and [`Pipeline::new`](crate::Pipeline::new).
+    /// [`Error::Parameter`](crate::Error::Parameter) for a parameter out of range, also for a fault that begins after the flight
+    /// is given up; as [`Renderer::new`](crate::sim::Renderer::new) and [`Pipeline::new`](crate::Pipeline::new).
     pub fn new(backends: [Backend; 2], course: &Course, config: &FlightConfig) -> Result<Self> {
         config.validate()?;
-        let mut config = config.clone();
-        config.pipeline.gyro = Some(gyro_config());
-        config.pipeline.fields.looming |= config.measure;
-        config.pipeline.fields.cells |= config.measure;
         course.validate()?;
         config.check_faults_in(course)?;
         let random = Random::new(course.seed);
@@ -87,7 +83,7 @@ impl Flight {
         Ok(Self {
             course: course.clone(),
             vehicle: config.body.vehicle(&start, wind)?,
-            sensor: SensorModel::new(backends, &course.world, &config, random.fork(2))?,
+            sensor: SensorModel::new(backends, &course.world, config, random.fork(2))?,
             steering: Steering::new(steer)?,
             gyro: GyroModel::new(&config.gyro, random.fork(3).next_u64())?,
             airspeed: AirspeedModel::new(config.airspeed_error, random.fork(4).next_u64())?,
@@ -101,37 +97,37 @@ impl Flight {
             tally: Tally::default(),
             cost: Cost::default(),
             states: Vec::new(),
-            config,
+            config: config.clone(),
         })
     }
 
-    /// Where it leads through.
+    /// The course.
     pub fn course(&self) -> &Course {
         &self.course
     }
 
-    /// How it is flown.
+    /// The configuration.
     pub fn config(&self) -> &FlightConfig {
         &self.config
     }
 
-    /// The pinhole in whose pictures the view is looked at.
+    /// The ideal camera, a pinhole, in whose image the flow is computed.
     pub fn ideal(&self) -> &Camera {
         self.sensor.ideal()
     }
 
-    /// What the parts of the last frame cost.
+    /// The time that each part of the last frame took.
     pub fn cost(&self) -> Cost {
         self.cost
     }
 
-    /// The vehicle's states from the last frame to the next one, [`STEP_S`] apart and each of the two included: what a gyro
-    /// or a faster camera on board would have seen. The last is missing where the flight ended.
+    /// The vehicle's states from the last frame to the next one, both included, [`STEP_S`] apart: what a gyro or a faster
+    /// camera on board would have measured. The last one is missing where the flight ended.
     pub fn states(&self) -> &[VehicleState] {
         &self.states
     }
 
-    /// Flies on to the end of the flight, and shows each frame.
+    /// Flies to the end of the flight and calls `show` with each frame.
     ///
     /// # Errors
     /// As [`Flight::step`].
@@ -143,10 +139,10 @@ impl Flight {
         }
     }
 
-    /// Flies on by a frame, and shows it. The summary, when the flight has ended.
+    /// Flies one frame further and calls `show` with it. The summary, once the flight has ended.
     ///
     /// # Errors
-    /// What drawing, the pipeline and `show` fail with, apart from faults that a flight goes on with.
+    /// Those of the renderer, the pipeline and `show`, except for configured faults, with which a flight goes on.
     pub fn step(&mut self, mut show: impl FnMut(&FlightFrame<'_>) -> Result<()>) -> Result<Option<Summary>> {
         let state = self.state(0);
         self.states.clear();

@@ -9,15 +9,15 @@ use super::perception::{Perception, SensorInput};
 use super::sensor::Sensor;
 use super::true_sensor::TrueSensor;
 use crate::backend::Backend;
-use crate::camera::{Camera, FRD_FROM_CAMERA};
+use crate::camera::Camera;
 use crate::error::Result;
-use crate::imu::{Gyro, GyroConfig, GyroSample};
+use crate::imu::{Gyro, GyroSample};
 use crate::pipeline::Invalid;
 use crate::sim::{Random, World};
 
 /// The sensor that a flight steers by.
 pub(super) enum SensorModel {
-    /// The world itself, what the gyro tells, and the time of the frame before.
+    /// The world itself, the gyro, and the time of the previous frame.
     True(Box<TrueSensor>, Box<Gyro>, Option<f64>),
     /// A camera and a pipeline.
     Camera(Box<CameraSensor>),
@@ -36,10 +36,10 @@ impl SensorModel {
         let ideal = config.pipeline.ideal(&config.camera)?;
         let view = &config.pipeline.sphere;
         let sensor = TrueSensor::new(&ideal, view, config.sensor, config.flow_noise, random)?;
-        Ok(Self::True(Box::new(sensor), Box::new(Gyro::new(gyro_config())?), None))
+        Ok(Self::True(Box::new(sensor), Box::new(Gyro::new(config.required_gyro()?)?), None))
     }
 
-    /// The pinhole in whose pictures it looks.
+    /// The ideal camera, a pinhole, whose view is observed.
     pub(super) fn ideal(&self) -> &Camera {
         match self {
             Self::Camera(sensor) => sensor.ideal(),
@@ -54,7 +54,7 @@ impl SensorModel {
         }
     }
 
-    /// Looks at the world.
+    /// Observes the world.
     pub(super) fn sense(
         &mut self,
         at: &SensorInput<'_>,
@@ -89,9 +89,4 @@ impl Perception<'_> {
     fn invalid(why: &Invalid) -> Self {
         Self { invalid: Some(why.to_string()), ..Self::default() }
     }
-}
-
-/// How the gyro's samples, in the body's frame, belong to a camera that looks along the body's x axis.
-pub(super) fn gyro_config() -> GyroConfig {
-    GyroConfig { camera_from_gyro: FRD_FROM_CAMERA.transpose(), ..GyroConfig::default() }
 }
