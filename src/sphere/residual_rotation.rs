@@ -77,7 +77,7 @@ fn seen(sectors: &Sectors) -> Vec<SectorFlow> {
             weight: sector.coverage * sector.confidence,
         })
         .collect();
-    // Something fast that moves by itself must not mislead the first iteration.
+    // A fast object with its own motion must not mislead the first iteration.
     let speed = median(seen.iter().map(|sector| sector.flow.length()));
     let usual = speed.map_or(1.0, |speed| speed.max(1e-4));
     seen.iter_mut().for_each(|sector| sector.weight /= 1.0 + (sector.flow.length() / usual).powi(2));
