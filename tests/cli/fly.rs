@@ -72,7 +72,7 @@ fn the_log_tells_the_flight_from_beginning_to_end() {
     for (number, frame) in frames.iter().enumerate() {
         assert_eq!(frame["frame"], number);
         let time_s = frame["time_s"].as_f64().unwrap();
-        // To the last bit: what begins at 1 s begins with frame 30.
+        // Exactly: a fault that begins at 1 s begins with frame 30.
         assert!(time_s == number as f64 / 30.0 && header["frame_s"] == FRAME_S);
         for vector in ["position_ned_m", "velocity_ned_m_s", "roll_pitch_yaw_rad", "rate_body_rad_s"] {
             assert_eq!(frame[vector].as_array().unwrap().len(), 3, "{vector}");
@@ -132,8 +132,8 @@ fn a_video_shows_every_frame_and_changes_nothing() {
             before.clone_from(&image);
         }
         assert_eq!(video.frames_read(), frames.len().div_ceil(3) as u64);
-        // The same flight again without it, into the same folder: leftovers of the first one would be taken for the
-        // second's.
+        // The same flight again without --measure, into the same folder: files left by the first one would be mistaken
+        // for the second's.
         let whole = fs::read(folder.join("a/flight.jsonl")).unwrap();
         assert!(matches!(program(folder, &args).code, Some(0)));
         assert!(bytes == fs::read(folder.join("a/flight.y4m")).unwrap(), "{sensor:?}");
