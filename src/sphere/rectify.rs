@@ -20,7 +20,7 @@ pub(super) struct Rectification<'a> {
     gray: BufId,
     /// The certainty of the ideal camera's pixels.
     pub(super) certainty: BufId,
-    /// The map from the ideal image to the raw frame; None where the raw frame is the ideal image.
+    /// The map from the ideal image to the raw frame; `None` where the raw frame is the ideal image.
     pub(super) map: Option<Map>,
     /// The same for the previous frame, as the rotated camera would have seen it.
     pub(super) turned: Option<Map>,

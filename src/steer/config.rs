@@ -15,8 +15,8 @@ pub enum Policy {
     /// A repulsive force from every obstacle and an attractive one to the goal (O. Khatib, Real-time obstacle
     /// avoidance for manipulators and mobile robots, IJRR 5, 1986).
     Potential,
-    /// The cheapest heading (J. Borenstein and Y. Koren, The vector field histogram, IEEE Trans. Robotics and Automation
-    /// 7, 1991).
+    /// The cheapest heading (J. Borenstein and Y. Koren, The vector field histogram, IEEE Trans. Robotics and
+    /// Automation 7, 1991).
     Heading,
     /// The cheapest of the arcs that the aircraft can fly (after D. Fox, W. Burgard and S. Thrun, The dynamic window
     /// approach to collision avoidance, IEEE Robotics and Automation Magazine 4, 1997).
