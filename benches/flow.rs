@@ -1,6 +1,6 @@
 //! A pair and a stream at 640×480, on the CPU and on a GPU if there is one: `cargo bench --bench flow`.
 //!
-//! `-- --test` runs each once. Against OpenCV, and in turns with it: `python benches/opencv.py`.
+//! `-- --test` runs each once. `python benches/opencv.py` compares with OpenCV, running both in alternation.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -20,7 +20,7 @@ fn main() {
     divan::main();
 }
 
-/// What computes, shown by its kind.
+/// A backend, displayed as `cpu` or `gpu`.
 struct On(Backend);
 
 impl fmt::Display for On {
@@ -46,13 +46,13 @@ fn scene() -> [Image; 2] {
     [0, 1].map(|number| scene.frame(number))
 }
 
-/// The flow of an image after the one before, read back.
+/// Computes the flow from the previous image and reads it back.
 fn process(engine: &mut Engine, image: &Image) -> bool {
     let frame = image.frame().expect("a whole image");
     engine.process(&frame).expect("the device is there").is_some()
 }
 
-/// Both frames are new, as where pictures come from different cameras.
+/// Both frames are new, as with unrelated pairs.
 #[divan::bench(args = backends())]
 fn pair(bencher: Bencher<'_, '_>, on: &On) {
     let (mut engine, images) = (engine(on), scene());
@@ -62,7 +62,7 @@ fn pair(bencher: Bencher<'_, '_>, on: &On) {
     });
 }
 
-/// What was computed of the previous frame is kept.
+/// The previous frame's expansion is reused.
 #[divan::bench(args = backends())]
 fn stream(bencher: Bencher<'_, '_>, on: &On) {
     let (mut engine, images) = (engine(on), scene());

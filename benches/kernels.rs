@@ -1,6 +1,6 @@
 //! Each kernel's reference on the CPU, at 640×480: `cargo bench --bench kernels`, or `… --bench kernels -- solve`.
 //!
-//! `-- --test` runs each once. What a whole pair takes, step by step, on either executor says `viewsphere bench`.
+//! `-- --test` runs each once. `viewsphere bench` times a whole pair, step by step, on either executor.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ fn main() {
     divan::main();
 }
 
-/// A kernel, shown by its name.
+/// A kernel, displayed by its name.
 struct Named(&'static Kernel);
 
 impl fmt::Display for Named {

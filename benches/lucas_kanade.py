@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Dense Lucas-Kanade flow beside OpenCV's sparse one on a grid of points, on pairs with ground truth.
+"""Compares dense Lucas-Kanade flow with OpenCV's sparse one on a grid of points, on pairs with ground truth.
 
     python benches/lucas_kanade.py DATA [--binary target/release/viewsphere] [flags of `viewsphere flow` ...]
 
-DATA is a folder with yosemite/ and middlebury/. Needs numpy and opencv-python. OpenCV tracks forth and back; a point
-converges where it comes back within 0.5 px and OpenCV says that it was found; ours where the flow forth and back agree alike.
+DATA is a folder with yosemite/ and middlebury/. Needs numpy and opencv-python. OpenCV tracks each point forward and back;
+it converges if it returns within 0.5 px and OpenCV reports it as found. viewsphere's converges if its forward and backward
+flow agree within 0.5 px.
 """
 import argparse
 import pathlib

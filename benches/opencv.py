@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Times viewsphere against OpenCV, alternately in one run, and compares the fields.
+"""Times viewsphere and OpenCV in alternation, and compares their flow fields.
 
-    python benches/opencv.py                              # 640x480, made-up scene
+    python benches/opencv.py                              # 640x480, synthetic scene
     python benches/opencv.py --sizes 320x240,1280x720 --rounds 30 --json figures.json
     python benches/opencv.py --images a.png b.png
 
-Ours runs in one long-lived process, `viewsphere bench --serve`, which times itself and keeps what it
-needs between requests; OpenCV runs in this process. A round runs each contender once; the starting
-contender changes from round to round, and the ratio is taken within a round, so a machine that gets
-slower or faster meanwhile hits both. Two rounds go before as warm-up; in the first of them the
-fields are compared. "stream" is ours on a video: the second image's data serve the next pair.
+viewsphere runs in one long-lived process, `viewsphere bench --serve`, which times itself and keeps
+its device and engines between requests; OpenCV runs in this process. A round runs each contender
+once. The starting contender changes from round to round, and ratios are taken within a round, so
+that a machine that slows down or speeds up affects both alike. Two warm-up rounds go first; the
+fields are compared in the first of them. "stream" is viewsphere on a video: the second image's
+data are reused for the next pair.
 
 Ends with 1 if a field differs from OpenCV's by more than 1e-4 px on average or more than 1e-2 px at
-the 99.9th percentile, with 2 if ours fails otherwise (a missing GPU counts only with --need-gpu).
+the 99.9th percentile, with 2 if viewsphere fails otherwise (a missing GPU is a failure only with --need-gpu).
 
 The protocol, one JSON object per line on the server's stdin and stdout:
     {"a": path, "b": path, "backend": "gpu"|"cpu", "params": {"pyr_scale", "levels", "winsize",
@@ -55,7 +56,7 @@ MEAN_BOUND, P999_BOUND = 1e-4, 1e-2
 
 
 class Server:
-    """Our process and its requests."""
+    """The server process and its requests."""
 
     def __init__(self, command):
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
@@ -86,7 +87,7 @@ class Server:
 
 
 def opencv(first, second, params):
-    """OpenCV's field and its milliseconds."""
+    """OpenCV's flow field, and its time in milliseconds."""
     flags = cv2.OPTFLOW_FARNEBACK_GAUSSIAN if params["window"] == "gaussian" else 0
     numbers = [params[name] for name in NAMES[:-1]]
     start = time.perf_counter()
@@ -95,7 +96,7 @@ def opencv(first, second, params):
 
 
 def difference(ours, theirs):
-    """Mean, 99.9th percentile and maximum of the length of the vectors' difference, in pixels."""
+    """Mean, 99.9th percentile and maximum of the distance between the vectors, in pixels."""
     if ours.shape != theirs.shape:
         return {"mean": float("inf"), "p99.9": float("inf"), "max": float("inf")}
     d = np.hypot(*np.moveaxis(ours.astype(np.float64) - theirs, 2, 0))
@@ -105,7 +106,7 @@ def difference(ours, theirs):
 
 
 def measure(server, name, params, first, second, folder, options):
-    """All contenders on one setting and one size."""
+    """Measures all contenders with one setting and one size."""
     height, width = first.shape
     paths = [str(folder / f"{width}x{height}_{k}.png") for k in (0, 1)]
     for path, image in zip(paths, (first, second)):
@@ -164,7 +165,7 @@ def cpu_name():
 
 
 def surroundings(binary):
-    """What the figures depend on."""
+    """The versions and the machine on which the figures depend."""
     version = subprocess.run([*binary, "--version"], capture_output=True, text=True, check=False)
     git = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"],
                          capture_output=True, text=True, check=False)
@@ -180,18 +181,18 @@ def surroundings(binary):
 def parse():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", help="ours (target/release/viewsphere, built if missing)")
+    parser.add_argument("--binary", help="the program (default: target/release/viewsphere, built if missing)")
     parser.add_argument("--sizes", default="640x480", help="comma-separated, such as 320x240")
-    parser.add_argument("--images", nargs=2, metavar=("A", "B"), help="instead of made-up ones")
-    parser.add_argument("--settings", default=",".join(SETTINGS), help="some of the three")
+    parser.add_argument("--images", nargs=2, metavar=("A", "B"), help="two images in place of the synthetic scene")
+    parser.add_argument("--settings", default=",".join(SETTINGS), help="comma-separated; default: all")
     parser.add_argument("--ours", default=",".join(OURS),
                         help="some of: " + ", ".join(OURS) + " (comma-separated)")
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--pause-ms", type=float, default=5.0,
-                        help="sleep after each run, for the other's threads to settle")
+                        help="sleep after each run, so that its threads settle")
     parser.add_argument("--opencv-threads", type=int, help="default: OpenCV's own choice")
     parser.add_argument("--need-gpu", action="store_true", help="fail if there is no GPU")
-    parser.add_argument("--json", type=pathlib.Path, help="write the figures here")
+    parser.add_argument("--json", type=pathlib.Path, help="write the figures to this file")
     options = parser.parse_args()
     options.ours = [c.strip() for c in options.ours.split(",")]
     options.settings = [s.strip() for s in options.settings.split(",")]
@@ -228,7 +229,7 @@ def find_binary(given):
 
 
 def show(result):
-    """The rows of one setting and size; returns the exit code it calls for."""
+    """Prints the rows of one setting and size; returns the resulting exit code."""
     code = 0
     head = f"{result['setting']:12}{result['size']:>10}{result['median_ms']['opencv']:>10.2f}"
     for c, error in result["errors"].items():

@@ -1,4 +1,4 @@
-"""Runs the calling script with the pinned OpenCV and numpy, in benches/.venv if need be."""
+"""Runs the calling script with the pinned OpenCV and numpy, in benches/.venv if necessary."""
 
 import os
 import pathlib
@@ -20,8 +20,8 @@ def _importable():
 
 
 def ensure():
-    """Returns if cv2 and numpy of the pinned versions can be imported. Otherwise makes the virtual
-    environment if it is missing and starts the same command again inside it."""
+    """Returns if cv2 and numpy can be imported in the pinned versions. Otherwise creates the virtual
+    environment if it is missing, and restarts the command inside it."""
     if _importable():
         return
     home = HERE / ".venv"

@@ -3,11 +3,11 @@
 
     python benches/reference_fields.py [--data DIR] [--out DIR]
 
-DIR (or $VIEWSPHERE_DATA, or ../shared/data) holds yosemite/ and middlebury/. Without it this says so
-and ends with 0. The output folder gets, per pair, the gray images as they were used, <pair>_0.pgm
-and <pair>_1.pgm, and a field per setting, <pair>_<setting>.flo. Printed: the mean endpoint error in
-pixels and the mean angle in degrees between (u, v, 1) vectors, where the truth is known; for
-Yosemite on land only (its sky has no truth).
+DIR (or $VIEWSPHERE_DATA, or ../shared/data) holds yosemite/ and middlebury/. Without it the script
+says so and exits with 0. The output folder receives, per pair, the gray images used, <pair>_0.pgm and
+<pair>_1.pgm, and one field per setting, <pair>_<setting>.flo. The script prints the mean endpoint
+error in pixels and the mean angle in degrees between (u, v, 1) vectors, over pixels with ground
+truth; for Yosemite on land only, as its sky has none.
 """
 
 import argparse
@@ -69,7 +69,7 @@ def main():
     data = options.data or pathlib.Path(os.environ.get("VIEWSPHERE_DATA")
                                         or ROOT.parent / "shared/data")
     if not (data / "middlebury").is_dir() or not (data / "yosemite").is_dir():
-        print(f"no data in {data} (--data or VIEWSPHERE_DATA says where): nothing done")
+        print(f"no data in {data} (set --data or VIEWSPHERE_DATA): nothing done")
         return
     options.out.mkdir(parents=True, exist_ok=True)
     cv2.ocl.setUseOpenCL(False)

@@ -3,7 +3,7 @@
 struct Params {
     width: u32,
     height: u32,
-    share: f32, // of this picture in the sum
+    share: f32, // of this image in the sum
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

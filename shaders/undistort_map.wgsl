@@ -3,7 +3,7 @@
 struct Params {
     width: u32,
     height: u32,
-    in_width: u32, // of the raw picture
+    in_width: u32, // of the raw image
     in_height: u32,
     out_focal: vec2f,
     out_centre: vec2f,
@@ -12,7 +12,7 @@ struct Params {
     lens_a: vec4f, // k1 k2 p1 p2
     lens_b: vec4f, // k3 k4 k5 k6
     limit: vec2f,  // of r², up to which the lens is one to one, and how steeply the certainty falls to it
-    middle: vec2f, // of the raw picture
+    middle: vec2f, // of the raw image
     margin: vec2f, // pixels within its border
     masked: u32, // 0 if the mask is 1 everywhere
     padding: u32,

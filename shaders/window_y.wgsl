@@ -11,9 +11,8 @@ struct Params {
 @group(0) @binding(2) var<uniform> window: array<vec4f, 1024>; // weights from −radius to radius, then zeros
 @group(0) @binding(3) var<storage, read_write> columns: array<vec4f>;
 
-// Eight rows at a time: the window of rows slides in registers, four new rows per step. A row's channels lie side by side
-// and are averaged alike, so they are one row here: neighbouring invocations read what lies next to each other in
-// memory.
+// Eight rows at a time: the window of rows slides in registers, four new rows per step. A row's channels lie side by
+// side and are averaged alike, so that they are one row here: neighbouring invocations read adjacent memory.
 const SPAN = vec2u(4u, 8u);
 const SIDE_BY_SIDE = 5u;
 const MAX_STEPS = 257u;

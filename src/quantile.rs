@@ -7,25 +7,25 @@ pub(crate) fn sorted(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-/// The median; of an even count the upper one of the two in the middle; none of no values.
+/// The median: of an even count the upper of the two middle values; `None` if there are no values.
 pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     above_share(&sorted(values), 0.5)
 }
 
-/// The smallest of the sorted values that has this share of all of them before it: the value at index ⌊n · share⌋. None of no
-/// values.
+/// The sorted value with this share of all values before it: the one at index ⌊n · share⌋. `None` if there is no such
+/// index.
 pub(crate) fn above_share<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
     sorted.get((sorted.len() as f64 * share) as usize).copied()
 }
 
-/// The quantile of sorted values by the nearest index, where 0 is the first and 1 the last of them: that of share · (n − 1).
-/// None of no values.
+/// The quantile of sorted values by the nearest index, share · (n − 1), so that 0 is the first value and 1 the last
+/// one. `None` if there are no values.
 pub(crate) fn nearest<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
     sorted.get((sorted.len().saturating_sub(1) as f64 * share).round() as usize).copied()
 }
 
-/// The quantile of sorted values by the nearest rank: the smallest value that is not below this many thousandths of all, 0 to
-/// 1000. None of no values.
+/// The quantile of sorted values by the nearest rank: the smallest value that is not below this many thousandths of
+/// all, 0 to 1000. `None` if there are no values.
 pub(crate) fn nearest_rank<T: Copy>(sorted: &[T], thousandths: usize) -> Option<T> {
     sorted.get((sorted.len() * thousandths).div_ceil(1000).max(1) - 1).copied()
 }

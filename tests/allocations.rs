@@ -1,13 +1,14 @@
-//! What a frame allocates once a stream has begun.
+//! The allocations per frame of a running stream.
 //!
-//! A process of its own: the allocator that counts is the whole program's, and no other test may run beside this one.
+//! This is a process of its own: the counting allocator serves the whole program, and no other test may run beside this
+//! one.
 //!
-//! On the CPU it is nothing: where a picture is large enough to be shared out, rayon takes a block for its queue of jobs
-//! now and then. On the GPU wgpu allocates in every submission, so the engine is held against the same work done with
-//! wgpu by hand. The two differ by a few, within [`SLACK`] a frame: wgpu itself is not the same in both (a bare `unmap`
-//! was seen to take two more in the engine, a submission three fewer), and less so the busier the machine is: 2.3 more in
-//! the engine on an idle one, 4.8 on one that had four things to do for each two cores. So the bound shows that nothing as large as a
-//! buffer or as many as a step's worth is ours; that what is held does not grow is exact.
+//! On the CPU there are none, but for the job queue of rayon, which allocates a block now and then when images are
+//! large enough to be shared out. On the GPU wgpu allocates in every submission, so the engine is compared with the
+//! same work done with wgpu by hand. The two differ by a few allocations, within [`SLACK`] per frame, as wgpu itself
+//! does not allocate the same in both: a bare `unmap` took two more in the engine, a submission three fewer; the engine
+//! had 2.3 more on an idle machine, 4.8 on one with twice as many busy processes as cores. So the bound shows that the
+//! engine allocates nothing as large as a buffer, and nothing per step. The memory held is compared exactly.
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 #[path = "common/need.rs"]
@@ -24,7 +25,7 @@ use viewsphere::plan::Plan;
 use viewsphere::{Backend, Config, Engine, StreamConfig};
 use wgpu::{BufferDescriptor, BufferUsages, MapMode, PollType};
 
-/// Counts what goes through the system's allocator.
+/// Counts the calls of the system's allocator.
 struct Counting;
 
 static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -34,7 +35,7 @@ static LIVE: AtomicI64 = AtomicI64::new(0);
 static ALLOCATOR: Counting = Counting;
 
 #[allow(unsafe_code, reason = "an allocator cannot be written without; every call is handed on as it is")]
-// SAFETY: all of it is done by the system's allocator, with the arguments that came in.
+// SAFETY: the system's allocator does all the work, with the given arguments.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.fetch_add(1, Relaxed);
@@ -52,7 +53,7 @@ unsafe impl GlobalAlloc for Counting {
 
 const WARM_UP: usize = 30;
 const FRAMES: usize = 300;
-/// Allocations of a frame, of about a hundred, that the engine may have more than the work by hand.
+/// The engine's allowance of allocations per frame, of about a hundred, over the work by hand.
 const SLACK: u64 = 8;
 
 /// Two frames of noise.
@@ -67,7 +68,7 @@ fn noise(size: Size) -> [Vec<u8>; 2] {
     })
 }
 
-/// Allocations of these frames in all, and by how much more is held after them.
+/// The number of allocations for these frames, and the growth of the memory held.
 fn measure(mut frame: impl FnMut(usize)) -> (u64, i64) {
     (0..WARM_UP).for_each(&mut frame);
     let (count, live) = (COUNT.load(Relaxed), LIVE.load(Relaxed));
@@ -86,7 +87,7 @@ fn stream(backend: Backend, size: Size, config: &Config) -> (u64, i64) {
     })
 }
 
-/// The same work as an engine's, by hand.
+/// The engine's work, by hand.
 fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
     let (device, queue) = (gpu.device(), gpu.queue());
     let exec = GpuExecutor::new(gpu, plan).unwrap();
@@ -119,7 +120,7 @@ fn by_hand(gpu: &Gpu, plan: &Plan) -> (u64, i64) {
     })
 }
 
-/// One test, as the counters are the process's.
+/// A single test, as the counters belong to the process.
 #[test]
 fn a_frame_takes_no_memory() {
     let small = Size::new(64, 48);
@@ -141,7 +142,7 @@ fn a_frame_takes_no_memory() {
     let Some(gpu) = need::gpu_if_any() else { return };
     let config = Config::default();
     let plan = flow::plan(&config.algorithm, small, config.format, config.options()).unwrap();
-    // Each on a device of its own: what wgpu allocates depends on how many resources a device has seen.
+    // Each on its own device: wgpu's allocations depend on how many resources a device has had.
     let open = || gpu.reopen().unwrap();
     let (hand, hand_live) = by_hand(&open(), &plan);
     let (ours, live) = stream(Backend::Gpu(open()), small, &config);

@@ -29,7 +29,7 @@ pub fn world_from_body(roll_rad: f64, pitch_rad: f64, yaw_rad: f64) -> DMat3 {
     )
 }
 
-/// How far a rotation that a user gives may be from one, element by element of M Mᵀ − 1. Files state four digits and more.
+/// The largest deviation of a user's matrix from a rotation, per element of M Mᵀ − 1. Files state four digits or more.
 const ROTATION_TOLERANCE: f64 = 1e-3;
 
 /// Whether a matrix is a rotation, to the digits that files state: orthogonal, and no mirror.
@@ -38,7 +38,8 @@ pub(crate) fn is_rotation(m: &DMat3) -> bool {
     off.iter().all(|e| e.abs() <= ROTATION_TOLERANCE) && m.determinant() > 0.0
 }
 
-/// Roll, pitch and yaw of a rotation: the inverse of [`world_from_body`], pitch from −π/2 to π/2, the others from −π to π.
+/// Roll, pitch and yaw of a rotation: the inverse of [`world_from_body`]. Pitch is from −π/2 to π/2, the others from −π
+/// to π.
 ///
 /// With the nose straight up or down only the sum or the difference of roll and yaw is defined; roll is 0 then.
 pub fn roll_pitch_yaw_rad(world_from_body: &DMat3) -> [f64; 3] {

@@ -43,7 +43,7 @@ const INTERRUPTED: i32 = 130;
     after_help = "\
 Examples:
   viewsphere demo                                    flow, time to contact and steering on one page
-  viewsphere flow a.png b.png -o flow.flo            the flow between two pictures
+  viewsphere flow a.png b.png -o flow.flo            the flow between two images
   ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be hit, where and when
   viewsphere simulate --world city --seed 3 -o set/    a simulated flight with exact ground truth
@@ -119,7 +119,7 @@ impl Command {
 }
 
 /// The exit codes of commands that do not document their own.
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 a check failed, 2 an error, told in one line on standard error; 130 stopped by a signal.";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 a check failed, 2 an error, reported in one line on standard error; 130 stopped by a signal.";
 
 /// The program's arguments. Every command's help ends with its exit codes.
 fn command() -> clap::Command {

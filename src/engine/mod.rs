@@ -119,7 +119,7 @@ impl Engine {
         self.stream.poll(ticket)
     }
 
-    /// Waits for a frame. None if it has no previous frame: it is the first one, or the first one after a reset or a
+    /// Waits for a frame. `None` if it has no previous frame: it is the first one, or the first one after a reset or a
     /// loss.
     ///
     /// # Errors

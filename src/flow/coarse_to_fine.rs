@@ -14,7 +14,7 @@ pub(super) struct CoarseToFine {
 /// One level's flow, and the tables for reading the coarser level's.
 struct FlowLevel {
     level: Level,
-    /// None for the finest level, whose flow is the plan's.
+    /// `None` for the finest level, whose flow is the plan's.
     flow: Option<BufId>,
     /// The second buffer, which every other iteration writes, if iterations add to the flow so far.
     other: Option<BufId>,
@@ -50,11 +50,11 @@ impl CoarseToFine {
         let (finest, coarsest) = (levels[0].size, levels[levels.len() - 1].size);
         let start = if wanted.initial_flow {
             Start::Given([
-                bufs.constant("columns of the given flow", tables::cover(finest.width, coarsest.width)),
-                bufs.constant("rows of the given flow", tables::cover(finest.height, coarsest.height)),
+                bufs.constant("columns of the initial flow", tables::cover(finest.width, coarsest.width)),
+                bufs.constant("rows of the initial flow", tables::cover(finest.height, coarsest.height)),
             ])
         } else {
-            Start::Zero(bufs.constant("no motion", vec![0.0; Shape::planar(coarsest, 2).len()]))
+            Start::Zero(bufs.constant("zero motion", vec![0.0; Shape::planar(coarsest, 2).len()]))
         };
         let flow_level = |(k, &level): (usize, &Level)| FlowLevel {
             level,

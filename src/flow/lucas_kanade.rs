@@ -2,8 +2,8 @@
 //!
 //! B. Lucas and T. Kanade, An iterative image registration technique with an application to stereo vision, IJCAI 1981;
 //! pyramid and warping after J.-Y. Bouguet, Pyramidal implementation of the Lucas Kanade feature tracker, 2001, here
-//! for every pixel. Each iteration warps the second image by the flow so far; each pixel's equations are linear around its
-//! own displacement, so that a window's solution is the one displacement that fits all of it.
+//! for every pixel. Each iteration warps the second image by the flow so far. Each pixel's equations are linearized
+//! around its own displacement, and the solution of a window is the one displacement that fits all of its pixels best.
 
 use super::coarse_to_fine::{CoarseToFine, Iteration};
 use super::parameter::{self, Choice, Parameter, Parameters, choice_name, choose, read, within};
@@ -22,7 +22,7 @@ pub struct LucasKanade {
     pub pyr_scale: f64,
     /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
     pub levels: u32,
-    /// Width of the window in pixels, 2 to 1024. An even one reaches as far as the next odd one.
+    /// Width of the window in pixels, 2 to 1024. An even width extends as far as the next odd one.
     pub winsize: u32,
     /// Iterations (warps) on each level, 1 to 1000.
     pub iterations: u32,
@@ -44,10 +44,10 @@ const fn number(name: &'static str, value_name: &'static str, help: &'static str
 
 impl Parameters for LucasKanade {
     const NAME: &'static str = "lucas-kanade";
-    const ABOUT: &'static str = "image gradients, pyramidal with warping, for every pixel";
+    const ABOUT: &'static str = "image gradients at every pixel, pyramidal with warping";
     const LIST: &'static [Parameter] = &[
-        number("pyr_scale", "RATIO", "A level's size against the next finer one, above 0 and below 1"),
-        number("levels", "N", "Levels beside the full picture, 0 to 32"),
+        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        number("levels", "N", "Levels beside the full image, 0 to 32"),
         number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
         number("iterations", "N", "Iterations on each level, 1 to 1000"),
         Parameter {
@@ -55,8 +55,8 @@ impl Parameters for LucasKanade {
             value_name: "NAME",
             help: "Shape of the averaging window",
             choices: &[
-                ("box", "All neighbours count the same"),
-                ("gaussian", "Near neighbours count more"),
+                ("box", "All neighbours have the same weight"),
+                ("gaussian", "Near neighbours have more weight"),
             ],
         },
     ];
@@ -124,15 +124,15 @@ impl Estimator for LucasKanade {
         Box::new(LucasKanadeStages {
             images: pictures(bufs, "image"),
             weighted: wanted.certainty.then(|| Weighted {
-                full: [bufs.computed("gray times certainty", plane), bufs.computed("certainty in its range", plane)],
-                level: bufs.computed("level's image times certainty", plane),
+                full: [bufs.computed("weighted gray", plane), bufs.computed("clamped certainty", plane)],
+                level: bufs.computed("level's weighted image", plane),
                 certainties: pictures(bufs, "certainty"),
             }),
-            known: (!wanted.certainty).then(|| bufs.constant("equal certainty", vec![1.0; plane.len()])),
+            known: (!wanted.certainty).then(|| bufs.constant("full certainty", vec![1.0; plane.len()])),
             pyramid: Pyramid::new(bufs, size, &levels),
             coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, false),
             warped: bufs.computed("warped", plane),
-            shown: bufs.computed("shown", plane),
+            shown: bufs.computed("visible", plane),
             equations: bufs.computed("equations", five),
             columns: bufs.computed("averaged columns", five),
             window_y: bufs.constant("window, columns", tables::window_from(&window, radius)),

@@ -79,7 +79,7 @@ macro_rules! estimators {
                 match self { $(Self::$Type(_) => <$Type>::PRESETS),* }
             }
 
-            /// The value of a parameter as text; None if the method has no parameter of this name.
+            /// The value of a parameter as text; `None` if the method has no parameter of this name.
             pub fn get(&self, name: &str) -> Option<String> {
                 match self { $(Self::$Type(parameters) => parameters.get(name)),* }
             }

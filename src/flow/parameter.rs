@@ -32,10 +32,10 @@ pub trait Parameters: Sized + Default {
     /// The presets: named sets of values, each with its meaning; one of them is `default`.
     const PRESETS: &'static [Choice];
 
-    /// The values of a preset; None for an unknown name.
+    /// The values of a preset; `None` for an unknown name.
     fn preset(name: &str) -> Option<Self>;
 
-    /// The value of a parameter as text; None for an unknown name.
+    /// The value of a parameter as text; `None` for an unknown name.
     fn get(&self, name: &str) -> Option<String>;
 
     /// Sets a parameter from text. It does not check ranges: [`Estimator::validate`](super::Estimator::validate) does.

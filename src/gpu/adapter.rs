@@ -11,14 +11,14 @@ use crate::error::{Error, Result};
 /// The choice of an adapter, and its options.
 #[derive(Clone, Debug, Default)]
 pub struct GpuOptions {
-    /// Part of the adapter's name, upper or lower case; None for the best adapter there is.
+    /// Part of the adapter's name, upper or lower case; `None` for the best adapter there is.
     pub adapter: Option<String>,
     /// Whether an adapter that computes on the CPU, such as lavapipe, may be taken without being named.
     ///
     /// Off by default: such an adapter is slower than the CPU executor.
     pub allow_software: bool,
     /// A folder that keeps the driver's compiled code from one process to the next, if the adapter supports it
-    /// (`Features::PIPELINE_CACHE`); it is created when it is needed. None, the default, writes nothing. Native only.
+    /// (`Features::PIPELINE_CACHE`); it is created when it is needed. `None`, the default, writes nothing. Native only.
     ///
     /// It must be a folder that only the user can write to: drivers trust what they have compiled. A file in it that is
     /// damaged or belongs to another driver is replaced. A folder that cannot be written to is no error.

@@ -21,12 +21,12 @@ const MAGIC: &[u8; 8] = b"VSPIPE01";
 pub(super) struct DiskCache {
     cache: PipelineCache,
     file: PathBuf,
-    /// The hash of the file's content; None if it has no usable content.
+    /// The hash of the file's content; `None` if it has no usable content.
     saved: Mutex<Option<u64>>,
 }
 
 impl DiskCache {
-    /// The cache of a device in a folder. None if the device has no [`Features::PIPELINE_CACHE`].
+    /// The cache of a device in a folder. `None` if the device has no [`Features::PIPELINE_CACHE`].
     pub(super) fn open(device: &Device, folder: &Path) -> Option<Self> {
         if !device.features().contains(Features::PIPELINE_CACHE) {
             return None;
@@ -66,7 +66,7 @@ impl DiskCache {
     }
 }
 
-/// Creates a pipeline cache from the data of an earlier one, or an empty one. None if wgpu refuses.
+/// Creates a pipeline cache from the data of an earlier one, or an empty one. `None` if wgpu refuses.
 fn create(device: &Device, data: Option<&[u8]>) -> Option<PipelineCache> {
     let filters = [ErrorFilter::OutOfMemory, ErrorFilter::Validation];
     let [memory, validation] = filters.map(|filter| device.push_error_scope(filter));
@@ -93,7 +93,7 @@ fn seal(data: &[u8]) -> Vec<u8> {
     [MAGIC, &hash(data).to_le_bytes(), data].concat()
 }
 
-/// The data of a file. None if it is damaged or not ours.
+/// The data of a file. `None` if it is damaged or not ours.
 fn unseal(bytes: &[u8]) -> Option<&[u8]> {
     let (expected, data) = bytes.strip_prefix(MAGIC)?.split_first_chunk()?;
     (hash(data) == u64::from_le_bytes(*expected)).then_some(data)

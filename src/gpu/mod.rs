@@ -166,7 +166,7 @@ impl Gpu {
         &self.queue
     }
 
-    /// The reason of the device's loss; None if it is not lost.
+    /// The reason of the device's loss; `None` if it is not lost.
     pub fn lost(&self) -> Option<String> {
         self.lost.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }

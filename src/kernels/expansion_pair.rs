@@ -20,7 +20,7 @@ pub(super) struct ExpansionPair<'a> {
     pub(super) cross_term_0: &'a [f32],
     pub(super) quad_1: &'a [[f32; 4]],
     pub(super) cross_term_1: &'a [f32],
-    /// The certainty of the second expansion; None for 1 everywhere.
+    /// The certainty of the second expansion; `None` for 1 everywhere.
     pub(super) certainty_1: Option<&'a [f32]>,
     pub(super) width: usize,
     pub(super) height: usize,

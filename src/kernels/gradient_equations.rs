@@ -1,10 +1,9 @@
 //! Each pixel's equations for its displacement from the image gradients in x, y and time.
 //!
-//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = Σ ∇I (∇I · d₀ − I_t)`, where d₀ is the flow so far and I_t
-//! is what it leaves. The gradients in
-//! x and y are Sobel's kernels over 8, that in time is the mean difference of 3 × 3 pixels, over 9: with these factors
-//! they are derivatives, in gray levels per pixel and per frame. A pixel's weight is the least share of its
-//! neighbourhood that both images show.
+//! Lucas and Kanade, An iterative image registration technique, IJCAI 1981: `Σ ∇I ∇Iᵀ d = Σ ∇I (∇I · d₀ − I_t)`, where
+//! d₀ is the flow so far and I_t the remaining difference in time. The gradients in x and y are Sobel's kernels over 8,
+//! that in time is the mean difference of 3 × 3 pixels, over 9: with these factors they are derivatives, in gray levels
+//! per pixel and per frame. A pixel's weight is the least share of its neighbourhood that both images show.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};

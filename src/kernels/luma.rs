@@ -1,7 +1,7 @@
 //! Brightness of a frame's pixels, as `f32`.
 //!
-//! White is 255 in every format, and 16-bit samples keep their fractions: the constants of the equations (10⁻³ beside the
-//! determinant, the noise of the confidence) are in those gray levels.
+//! White is 255 in every format, and 16-bit samples keep their fractions, because the constants of the equations (the
+//! 10⁻³ beside the determinant, the noise of the confidence) are in those gray levels.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use crate::frame::{PixelFormat, Size};

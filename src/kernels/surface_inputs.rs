@@ -85,7 +85,7 @@ fn block() -> SurfaceInputs {
     scene
 }
 
-/// Pixels of which the centre or a sample sees something else where it is turned by the margin.
+/// The pixels whose centre or samples meet another surface if their rays are rotated by the margin.
 fn near_an_edge(scene: &SurfaceInputs, size: Size, rays: &[[f32; RAY]]) -> Vec<usize> {
     let ids = |centres: bool, [x, y]: [f32; 2]| {
         let turned = |ray: &[f32; RAY]| {

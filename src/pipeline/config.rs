@@ -25,13 +25,13 @@ pub struct PipelineConfig {
     pub stream: StreamConfig,
     /// How the flow on the view sphere is aggregated.
     pub sphere: Sphere,
-    /// The ideal camera: a pinhole without a lens, of any size, in whose image the flow is computed. None for the
+    /// The ideal camera: a pinhole without a lens, of any size, in whose image the flow is computed. `None` for the
     /// largest view that the raw frame fills, at its size.
     pub ideal: Option<Camera>,
     /// The certainty of each pixel of the raw frame, 0 to 1, in a plane of the camera's size: 0 where the aircraft
-    /// itself is seen. None for 1 everywhere.
+    /// itself is seen. `None` for 1 everywhere.
     pub mask: Option<Plane>,
-    /// The gyro. Without one (None) the camera's rotation stays in the flow.
+    /// The gyro. Without one (`None`) the camera's rotation stays in the flow.
     pub gyro: Option<GyroConfig>,
     /// The outputs that are read back beside the sectors.
     pub fields: ExtraOutputs,

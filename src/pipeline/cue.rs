@@ -15,16 +15,16 @@ pub struct Cue<'a> {
     pub frame: u64,
     /// The frame's time in seconds, as the caller gave it.
     pub time_s: f64,
-    /// Seconds since the previous frame. None for a first frame.
+    /// Seconds since the previous frame. `None` for a first frame.
     pub interval_s: Option<f64>,
-    /// The reason why the cue must not be used; None if it is valid. The other fields of an invalid cue are for
+    /// The reason why the cue must not be used; `None` if it is valid. The other fields of an invalid cue are for
     /// diagnosis only.
     pub invalid: Option<Invalid>,
     /// The camera's rotation since the previous frame, where a gyro measured it: it takes a bearing in the camera's
     /// frame at this exposure into its frame at the previous one.
     pub prev_from_cur: Option<DMat3>,
     /// The residual rotation: the camera's angular rate that the flow shows and the gyro does not, rad/s in the
-    /// camera's frame, such as a gyro's bias. None without a gyro, and where too little is seen to estimate it.
+    /// camera's frame, such as a gyro's bias. `None` without a gyro, and where too little is seen to estimate it.
     pub residual_rotation_rad_s: Option<DVec3>,
     /// The direction in which the camera moves.
     pub heading: Heading,

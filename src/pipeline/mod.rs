@@ -67,8 +67,9 @@ impl Pipeline {
     /// Creates a pipeline for the frames of a camera.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for a parameter or camera that is out of range, [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a mask of
-    /// another size than the camera's; and as [`Stream::new`].
+    /// [`Error::Parameter`](crate::Error::Parameter) for a parameter or camera that is out of range,
+    /// [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a mask of another size than the camera's; and as
+    /// [`Stream::new`].
     pub fn new(backend: Backend, camera: &Camera, config: &PipelineConfig) -> Result<Self> {
         config.validate()?;
         camera.validate()?;
@@ -103,7 +104,7 @@ impl Pipeline {
     }
 
     /// Sets the heading at the next submitted frame, in the camera's frame, as measured by a wind vane or by satellite
-    /// navigation: it is better than the flow's own estimate. It stays until it is set again; None returns to the
+    /// navigation: it is better than the flow's own estimate. It stays until it is set again; `None` returns to the
     /// flow's estimate.
     pub fn set_heading(&mut self, heading: Option<Heading>) {
         self.given = heading;

@@ -42,7 +42,7 @@ impl Outputs {
         }
     }
 
-    /// The flow field of an output of [`PortKind::Flow`], displacements in pixels; None if there is no such output.
+    /// The flow field of an output of [`PortKind::Flow`], displacements in pixels; `None` if there is no such output.
     pub fn flow(&self, name: &str) -> Option<&FlowField> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Flow(flow) if *known == name => Some(flow),
@@ -50,7 +50,7 @@ impl Outputs {
         })
     }
 
-    /// The plane of an output of [`PortKind::Plane`], one value per pixel; None if there is no such output.
+    /// The plane of an output of [`PortKind::Plane`], one value per pixel; `None` if there is no such output.
     pub fn plane(&self, name: &str) -> Option<&Plane> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Plane(plane) if *known == name => Some(plane),
@@ -58,8 +58,8 @@ impl Outputs {
         })
     }
 
-    /// The values of an output of [`PortKind::Raw`], or the words of a frame, laid out as in the buffer; None if there
-    /// is no such output.
+    /// The values of an output of [`PortKind::Raw`], or the words of a frame, laid out as in the buffer; `None` if
+    /// there is no such output.
     pub fn raw(&self, name: &str) -> Option<&[f32]> {
         self.0.iter().find_map(|(known, output)| match output {
             Output::Raw(raw) if *known == name => Some(raw.as_slice()),

@@ -31,7 +31,7 @@ pub enum PortKind {
     Plane {
         /// The plane's size.
         size: Size,
-        /// The range to which an input's values are clamped; NaN becomes its lower end. None leaves the values
+        /// The range to which an input's values are clamped; NaN becomes its lower end. `None` leaves the values
         /// unchanged.
         range: Option<[f32; 2]>,
     },

@@ -1,4 +1,4 @@
-//! Text on pictures, in fixed-width fonts of X11 as embedded-graphics has them.
+//! Text on images, in the fixed-width fonts of X11 from embedded-graphics.
 
 use std::convert::Infallible;
 
@@ -13,15 +13,15 @@ use embedded_graphics::text::{Baseline, Text};
 
 use crate::frame::Image;
 
-/// Pixels of black around a text, for a font that is not enlarged.
+/// The black margin around a text, in pixels of the font's own size.
 const MARGIN: usize = 1;
 
-/// Writes a line of text, with black around it, on a picture of
-/// [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). It is about 7 `scale` pixels high; its upper left corner is at
-/// `at`, or as near to it as all of the text fits in. A character that the fonts (ISO 8859-1) lack is a question mark.
+/// Writes a line of text on black into an image of [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). The text is
+/// about 7 `scale` pixels high. Its upper left corner is at `at`, or as near to it as the whole text fits. Characters
+/// that the fonts (ISO 8859-1) lack become question marks.
 pub(super) fn text(image: &mut Image, at: [f64; 2], text: &str, colour: [u8; 3], scale: usize) {
     let (font, zoom) = font(scale);
-    // A minus and a dash that Latin-1 does not have.
+    // Latin-1 lacks the minus sign and the dash.
     let text = text.replace(['\u{2212}', '–'], "-");
     let [width, height] = [image.size.width as usize, image.size.height as usize];
     let characters = text.chars().count();
@@ -38,7 +38,7 @@ pub(super) fn text(image: &mut Image, at: [f64; 2], text: &str, colour: [u8; 3],
     let Ok(_) = text.draw(&mut Enlarged { image, corner, zoom });
 }
 
-/// A font, and how many pixels wide one of its dots is drawn.
+/// A font, and the width in pixels of one of its dots.
 fn font(scale: usize) -> (&'static MonoFont<'static>, usize) {
     match scale {
         0 | 1 => (&FONT_5X7, 1),
@@ -47,7 +47,7 @@ fn font(scale: usize) -> (&'static MonoFont<'static>, usize) {
     }
 }
 
-/// A picture to draw on from a corner on, each dot as a square of pixels. What is outside is not drawn.
+/// A part of an image to draw on, with each dot as a square of pixels. Dots outside are clipped.
 struct Enlarged<'a> {
     image: &'a mut Image,
     corner: [usize; 2],

@@ -31,7 +31,7 @@ pub(super) fn page(title: &str, body: &str) -> String {
     page_with(title, "", body)
 }
 
-/// The same with more elements in the page's head, such as a script, which are not escaped.
+/// A page with additional elements in its head, such as a script, which are not escaped.
 pub(super) fn page_with(title: &str, head: &str, body: &str) -> String {
     let title = escape(title);
     format!(
@@ -41,12 +41,12 @@ pub(super) fn page_with(title: &str, head: &str, body: &str) -> String {
     )
 }
 
-/// The address of a picture that is part of the page: its media type, such as `image/png`, and the file's bytes.
+/// The data URI of an embedded image, from its media type, such as `image/png`, and the file's bytes.
 pub(super) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     format!("data:{media_type};base64,{}", STANDARD.encode(bytes))
 }
 
-/// A picture with a caption, both escaped here. `alt` says what there is to see to those who cannot see it.
+/// An image with a caption. Both texts are escaped here. `alt` describes the image for those who cannot see it.
 pub(super) fn figure(uri: &str, size: Size, alt: &str, caption: &str) -> String {
     let Size { width, height } = size;
     let (alt, caption) = (escape(alt), escape(caption));

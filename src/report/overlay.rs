@@ -16,7 +16,7 @@ use crate::sphere::{Grid, Threat, bearing};
 /// The displacement in full colour, relative to the image's width: constant, so that colours are comparable between
 /// frames.
 const FULL_COLOUR: f32 = 0.01;
-/// How much of a sector's colour a filled sector has.
+/// The opacity of a filled sector.
 const FILLED: f32 = 0.45;
 /// The opacity of the fullest colour over the gray image.
 const OPAQUE: f32 = 0.6;
@@ -96,7 +96,7 @@ impl Overlay {
         Ok(&self.image)
     }
 
-    /// The same without the frame's time, and of the rest what `layers` has.
+    /// Draws without the frame's time, and only the given layers.
     pub(super) fn draw_layers(&mut self, frame: &Frame<'_>, cue: &Cue<'_>, layers: Layers) -> Result<&Image> {
         self.picture.draw(frame, &mut self.image)?;
         let scale = self.scale();
@@ -124,7 +124,7 @@ impl Overlay {
         Ok(&self.image)
     }
 
-    /// How many pixels wide a dot of text and the lines are.
+    /// The width of a font's dot and of lines, pixels.
     fn scale(&self) -> usize {
         (self.ideal.size.width as usize / 200).max(1)
     }
@@ -149,7 +149,7 @@ impl Overlay {
         Ok(())
     }
 
-    /// The colour of each sector's time; none where it is not met soon.
+    /// The colour of each sector's time to contact; `None` without a contact soon.
     fn colours(&mut self, cue: &Cue<'_>) -> Vec<Option<[u8; 3]>> {
         let grid = &cue.sectors.grid;
         if self.sectors.grid != Some(*grid) {
@@ -162,7 +162,7 @@ impl Overlay {
         cue.sectors.sectors.iter().map(colour).collect()
     }
 
-    /// Each sector that is met soon in the colour of its time.
+    /// Fills each sector that has a contact soon with the colour of its time.
     fn fill(&mut self, cue: &Cue<'_>) {
         let colours = self.colours(cue);
         let pixels = self.image.data.as_chunks_mut::<3>().0.iter_mut();
@@ -173,7 +173,7 @@ impl Overlay {
         }
     }
 
-    /// Each sector's own frame, a pixel wide, in the colour of its time.
+    /// Outlines each sector, one pixel wide, in the colour of its time.
     fn outline(&mut self, cue: &Cue<'_>) {
         let colours = self.colours(cue);
         let (width, of) = (self.ideal.size.width as usize, &self.sectors.of_pixel);

@@ -2,9 +2,9 @@
 
 use super::html::escape;
 
-/// Width of a drawing that takes all of a page.
+/// The width of a plot that spans the page.
 pub(super) const WIDE: f64 = 1000.0;
-/// Room for the labels of the axes and above the plot for its title.
+/// The margins for the labels of the axes, and above for the title.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 24.0;
@@ -34,7 +34,7 @@ pub(super) struct Plot<'a> {
     pub(super) unit: &'a str,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    /// Of the whole drawing, with its labels.
+    /// The size of the whole drawing, with its labels.
     pub(super) size: [f64; 2],
     pub(super) curves: Vec<Curve<'a>>,
     /// Named horizontal lines.
@@ -99,22 +99,22 @@ impl Plot<'_> {
     }
 }
 
-/// The plot area: where values lie in a drawing.
+/// The plot area: maps values to positions in a drawing.
 pub(super) struct PlotArea {
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    /// Of the whole drawing, with its labels.
+    /// The size of the whole drawing, with its labels.
     pub(super) size: [f64; 2],
 }
 
 impl PlotArea {
-    /// What a drawing is wider than the part between the axes.
+    /// The horizontal margins: the drawing's width beyond that of the plot area.
     pub(super) const BESIDE: f64 = LEFT + RIGHT;
-    /// What a drawing is higher than that part.
+    /// The vertical margins: the drawing's height beyond that of the plot area.
     pub(super) const ABOVE_AND_BELOW: f64 = TOP + BOTTOM;
 
-    /// The beginning of the element. Its `data-axis` tells scripts where the horizontal axis begins and ends, and with which
-    /// values.
+    /// The opening of the `svg` element. Its `data-axis` gives scripts the positions of both ends of the horizontal
+    /// axis and their values.
     pub(super) fn begin(&self, name: &str) -> String {
         let [width, height] = self.size;
         let ([from, to], left, right) = (self.x, LEFT, width - RIGHT);

@@ -76,7 +76,7 @@ impl SectorAggregator {
     }
 
     /// The sectors of the cells' flow between two frames `interval_s` apart. `flows` gives one value per cell, row by
-    /// row as [`Cells::rays`]; None is an unknown flow, and so are cells that it leaves out at the end.
+    /// row as [`Cells::rays`]; `None` is an unknown flow, and so are cells that it leaves out at the end.
     pub fn of(
         &mut self,
         flows: impl Iterator<Item = Option<CellFlow>>,

@@ -94,8 +94,8 @@ impl AlarmFilter {
         self.ages.fill(0);
     }
 
-    /// The threat that will be met first, alarms before others; None without a threat. `sectors` must have the filter's
-    /// grid.
+    /// The threat with the earliest contact, alarms before others; `None` without a threat. `sectors` must have the
+    /// filter's grid.
     pub fn update(&mut self, sectors: &Sectors, heading: &Heading) -> Option<Threat> {
         let grid = sectors.grid;
         let times: Vec<Option<f64>> = (0..grid.len()).map(|i| self.time_s(sectors, heading, i)).collect();

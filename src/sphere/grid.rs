@@ -87,7 +87,7 @@ impl Grid {
         bearing(self.angles_rad(column, row))
     }
 
-    /// Column and row of the sector that contains a bearing; None outside the grid.
+    /// Column and row of the sector that contains a bearing; `None` outside the grid.
     pub fn sector(&self, bearing: DVec3) -> Option<[usize; 2]> {
         let [azimuth, elevation] = angles_rad(bearing);
         let [across, up] = self.pitch_rad();

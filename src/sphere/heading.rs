@@ -69,7 +69,7 @@ impl HeadingFilter {
     pub fn update(&mut self, sectors: &Sectors, prev_from_cur: &DMat3) -> Heading {
         let cur_from_prev = self.model.cur_from_prev(prev_from_cur);
         let kept = MEMORY * (cur_from_prev * self.moment * cur_from_prev.transpose());
-        // A sector's weight is bounded: however fast something moves by itself, it is one sector among many.
+        // A sector's weight is bounded: a fast object with its own motion is one sector among many.
         let traces = sectors.moments.iter().map(trace);
         let usual = median(traces.filter(|trace| *trace > 0.0)).unwrap_or(1.0);
         let moments: Vec<DMat3> = (sectors.moments.iter())

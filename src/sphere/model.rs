@@ -64,7 +64,7 @@ mod tests {
     /// The bearing of a point after a time, with constant velocity and angular rate of the camera.
     fn seen(point: DVec3, time_s: f64) -> DVec3 {
         let turn = DMat3::from_axis_angle(OMEGA.normalize(), OMEGA.length() * time_s);
-        // V is the velocity in the frame at time 0; over so short a time it may as well stay there.
+        // V is the velocity in the frame at time 0. Over so short a time its change does not matter.
         (turn.transpose() * (point - V * time_s)).normalize()
     }
 

@@ -77,7 +77,7 @@ pub(crate) fn plan(
     let rectify = Rectification::new(&mut bufs, cameras, view, format);
     let motion = bufs.input("motion", MOTION_LEN);
     let found = bufs.computed("flow", Shape::planar(size, 2));
-    let rotational = primed.then(|| bufs.computed("flow of the turn", Shape::planar(size, 2)));
+    let rotational = primed.then(|| bufs.computed("rotational flow", Shape::planar(size, 2)));
     let wanted = Wanted { initial_flow: primed, certainty, confidence: false, evidence: true };
     let stages = algorithm.stages(&mut bufs, size, wanted);
     let aggregate = Aggregation::new(&mut bufs, view, cameras.ideal, &cells, &grid, fields);
@@ -102,8 +102,8 @@ pub(crate) fn plan(
             None => [parity, 1 - parity],
             Some(turned) => {
                 expand(&mut steps, parity, rectify.map, 0, "undistort");
-                steps.extend(rectify.make(turned, motion, "turn"));
-                expand(&mut steps, 1 - parity, Some(turned), 1, "undistort and turn");
+                steps.extend(rectify.make(turned, motion, "rotation"));
+                expand(&mut steps, 1 - parity, Some(turned), 1, "undistort and rotate");
                 [0, 1]
             }
         };
@@ -141,7 +141,7 @@ pub(crate) fn plan(
 fn rotational_flow_step(ideal: &Camera, motion: BufId, flow: BufId) -> Step {
     Step::new(
         &rotational_flow::KERNEL,
-        "turn",
+        "rotation",
         pinhole(ideal),
         &[motion],
         &[(flow, Shape::planar(ideal.size, 2))],

@@ -20,7 +20,7 @@ pub(super) struct Rectification<'a> {
     gray: BufId,
     /// The certainty of the ideal camera's pixels.
     pub(super) certainty: BufId,
-    /// The map from the ideal image to the raw frame; None where the raw frame is the ideal image.
+    /// The map from the ideal image to the raw frame; `None` where the raw frame is the ideal image.
     pub(super) map: Option<Map>,
     /// The same for the previous frame, as the rotated camera would have seen it.
     pub(super) turned: Option<Map>,
@@ -50,7 +50,7 @@ impl<'a> Rectification<'a> {
         let first = bufs.computed("brightness", Shape::planar(raw, 1));
         let second =
             if turns { bufs.computed("brightness of odd frames", Shape::planar(raw, 1)) } else { first };
-        let turned = turns.then(|| map(bufs, "turned"));
+        let turned = turns.then(|| map(bufs, "rotation"));
         let undistort = (!plain).then(|| map(bufs, "undistortion"));
         Self {
             cameras,
@@ -59,7 +59,7 @@ impl<'a> Rectification<'a> {
             gray: if plain && !turns { first } else { bufs.computed("gray", Shape::planar(ideal, 1)) },
             certainty: match undistort {
                 Some(map) => map.certainty,
-                None => bufs.constant("equal certainty", vec![1.0; Shape::planar(ideal, 1).len()]),
+                None => bufs.constant("full certainty", vec![1.0; Shape::planar(ideal, 1).len()]),
             },
             mask: (undistort.is_some() || turns).then(|| {
                 let mask = cameras.mask.map_or_else(|| vec![1.0; Shape::planar(raw, 1).len()], pack::share);
@@ -67,7 +67,7 @@ impl<'a> Rectification<'a> {
             }),
             map: undistort,
             turned,
-            still: bufs.constant("no turn", vec![0.0; MOTION_LEN]),
+            still: bufs.constant("no rotation", vec![0.0; MOTION_LEN]),
             lens: match cameras.mask {
                 Some(_) => lens,
                 None => lens.without_mask(),

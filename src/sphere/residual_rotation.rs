@@ -24,7 +24,7 @@ struct SectorFlow {
     weight: f64,
 }
 
-/// The camera's angular rate that the sectors' flow still shows, rad/s in the camera's frame; None where they do not
+/// The camera's angular rate that the sectors' flow still shows, rad/s in the camera's frame; `None` where they do not
 /// determine it.
 ///
 /// While the camera moves along v, the bearing p of a static point moves within the plane of p and v. Flow across that
@@ -77,7 +77,7 @@ fn seen(sectors: &Sectors) -> Vec<SectorFlow> {
             weight: sector.coverage * sector.confidence,
         })
         .collect();
-    // Something fast that moves by itself must not mislead the first iteration.
+    // A fast object with its own motion must not mislead the first iteration.
     let speed = median(seen.iter().map(|sector| sector.flow.length()));
     let usual = speed.map_or(1.0, |speed| speed.max(1e-4));
     seen.iter_mut().for_each(|sector| sector.weight /= 1.0 + (sector.flow.length() / usual).powi(2));
@@ -108,7 +108,7 @@ fn row(
     Some(([slope.x, slope.y, slope.z, along_a, along_b], left.dot(normal), sector.weight))
 }
 
-/// Solves linear equations with a positive definite matrix by elimination; None where it is not positive definite.
+/// Solves linear equations with a positive definite matrix by elimination; `None` where it is not positive definite.
 fn solve(mut matrix: [[f64; UNKNOWNS]; UNKNOWNS], mut right: [f64; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
     let largest = (0..UNKNOWNS).map(|i| matrix[i][i]).fold(0.0, f64::max);
     for i in 0..UNKNOWNS {

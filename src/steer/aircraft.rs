@@ -9,15 +9,15 @@ use crate::error::{Error, Result, in_ranges};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Aircraft {
-    /// The camera's mounting: turns a vector in the camera's frame into the body's.
+    /// The camera's mounting: the rotation from the camera's frame to the body's.
     pub body_from_camera: DMat3,
-    /// From a frame's exposure until its command acts, 0 to 1.
+    /// Time from a frame's exposure until its command takes effect, 0 to 1.
     pub latency_s: f64,
-    /// How it follows its commands.
+    /// The response to commands.
     pub response: Response,
 }
 
-/// How an aircraft follows its commands.
+/// The response of an aircraft to commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Response {
@@ -27,7 +27,8 @@ pub struct Response {
     pub bank_rate_rad_s: f64,
     /// Time constant of the climb, above 0.
     pub climb_time_s: f64,
-    /// From when a command acts until the aircraft begins to follow, 0 to 1: the delay of actuators and inner loop.
+    /// Time from when a command takes effect until the aircraft begins to follow, 0 to 1: the delay of actuators and
+    /// inner loop.
     pub lag_s: f64,
 }
 
@@ -39,7 +40,7 @@ impl Default for Aircraft {
 }
 
 impl Default for Response {
-    /// That of the simulator's airframe of 1.2 kg, fitted to its steps.
+    /// The response of the simulator's airframe of 1.2 kg, fitted to its step responses.
     fn default() -> Self {
         Self { bank_time_s: 0.12, bank_rate_rad_s: 115_f64.to_radians(), climb_time_s: 0.4, lag_s: 0.09 }
     }

@@ -15,8 +15,8 @@ pub enum Policy {
     /// A repulsive force from every obstacle and an attractive one to the goal (O. Khatib, Real-time obstacle
     /// avoidance for manipulators and mobile robots, IJRR 5, 1986).
     Potential,
-    /// The cheapest heading (J. Borenstein and Y. Koren, The vector field histogram, IEEE Trans. Robotics and Automation
-    /// 7, 1991).
+    /// The cheapest heading (J. Borenstein and Y. Koren, The vector field histogram, IEEE Trans. Robotics and
+    /// Automation 7, 1991).
     Heading,
     /// The cheapest of the arcs that the aircraft can fly (after D. Fox, W. Burgard and S. Thrun, The dynamic window
     /// approach to collision avoidance, IEEE Robotics and Automation Magazine 4, 1997).
@@ -38,21 +38,20 @@ pub enum Danger {
     Blend,
 }
 
-/// How the commands of steering come about: what is chosen, and what the aircraft is like. Angles are in radians, times in
-/// seconds.
+/// The configuration of steering: its parameters, and the aircraft. Angles are in radians, times in seconds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteerConfig {
-    /// What is chosen.
+    /// The steering parameters.
     pub params: SteerParams,
-    /// What the aircraft is like.
+    /// The aircraft to steer.
     pub aircraft: Aircraft,
 }
 
-/// What is chosen of steering.
+/// The parameters of steering.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SteerParams {
-    /// How a command is found.
+    /// How a command is chosen.
     pub policy: Policy,
     /// The measure of danger.
     pub danger: Danger,
@@ -60,7 +59,7 @@ pub struct SteerParams {
     pub max_bank_rad: f64,
     /// The steepest commanded climb and descent angle, 0 to π/4.
     pub max_climb_rad: f64,
-    /// How far ahead arcs are looked at, above 0 and at most 10.
+    /// The time over which arcs are predicted, above 0 and at most 10.
     pub horizon_s: f64,
     /// The clearance at which obstacles should be passed: half the wing span and a margin, above 0.
     pub radius_m: f64,

@@ -42,7 +42,7 @@ impl DangerMap {
         self.known.fill(0.0);
     }
 
-    /// Takes the sectors of a frame.
+    /// Updates the map with the sectors of a frame.
     pub(super) fn update(&mut self, params: &SteerParams, sectors: &Sectors, camera_from_level: &DMat3) {
         for at in 0..self.grid.len() {
             let (column, row) = (at % self.grid.columns, at / self.grid.columns);
@@ -66,7 +66,7 @@ impl DangerMap {
                 }
             }
             self.known[at] = f64::from(known) / f64::from(SAMPLES[0] * SAMPLES[1]);
-            // What cannot be seen has nothing near that could be told: the sky, and what is far away.
+            // Where no flow is known the rate decays to 0: the sky and what is far away have no measurable flow.
             self.rates_hz[at] += params.smoothing * (rate - self.rates_hz[at]);
         }
     }
@@ -80,6 +80,6 @@ fn rate_hz(danger: Danger, sector: &Sector) -> f64 {
         Danger::Divergence => growth,
         Danger::Blend => nearness.max(growth),
     };
-    // NaN and what recedes are no danger.
+    // NaN and receding surfaces are no danger.
     rate.max(0.0)
 }

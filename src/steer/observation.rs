@@ -68,7 +68,7 @@ impl Moving {
     pub(super) fn of(aircraft: &Aircraft, o: &Observation<'_>) -> Self {
         let seen = o.view.map(|view| view.heading).filter(|heading| heading.error_rad <= KNOWN_RAD);
         let body = o.motion_body.or(seen.map(|heading| aircraft.body_from_camera * heading.direction));
-        // Where nothing is known it moves the way its nose points.
+        // Without a known direction of motion the aircraft moves the way its nose points.
         let motion = o.ned_from_body * body.filter(|motion| motion.x > 0.0).unwrap_or(DVec3::X);
         Self {
             bank_rad: roll_pitch_yaw_rad(&o.ned_from_body)[0],

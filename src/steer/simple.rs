@@ -73,7 +73,7 @@ pub(super) fn potential(
         force -= FORCE * share * share * obstacle.place_ned_m.normalize_or_zero();
     }
     let there = level.ned_from.transpose() * force;
-    // A fixed wing cannot go back, however hard it is pushed: only the side counts.
+    // A fixed wing cannot fly backwards, however strong the force: only the side counts.
     let ahead = there.z.max(0.5);
     let [azimuth, elevation] = [there.x.atan2(ahead), (-there.y).atan2(there.x.hypot(ahead))];
     let climb_rad = if obstacles.is_empty() { hold_altitude(params, goal) } else { elevation };
@@ -97,7 +97,7 @@ pub(super) fn heading(
             let aside = ((y.atan2(x) - yaw).sin()).asin().abs();
             let wide = (params.radius_m / distance_m).min(1.0).asin() + params.half_width_rad;
             let ahead = x * yaw.cos() + y * yaw.sin() > 0.0;
-            // From certain to touch to half as far again.
+            // 1 within the angular half width, falling to 0 at 1.5 times that.
             let share = if ahead { ((1.5 * wide - aside) / (0.5 * wide)).clamp(0.0, 1.0) } else { 0.0 };
             share * ((rate_hz - 0.3) / 2.7).clamp(0.0, 1.0)
         };

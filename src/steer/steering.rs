@@ -28,23 +28,23 @@ pub struct Steering {
     seen_s: Option<f64>,
 }
 
-/// The origin of a command.
+/// The source of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The view.
     Cue,
-    /// There is no valid cue, and the last command is held.
+    /// The last command, held because there is no valid cue.
     Held,
-    /// There has been no valid cue for longer: level wings, and the configured climb.
+    /// Level wings and the configured climb, as there has been no valid cue for longer.
     Recovery,
 }
 
-/// A command, and its origin.
+/// A command and its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// The command to fly.
     pub command: Command,
-    /// The origin of the command.
+    /// The source of the command.
     pub source: Source,
     /// The obstacles' part of the chosen arc's cost, relative to the weight of the danger: 0 is free, 1 an immediate
     /// collision. `None` for policies without arcs.
@@ -173,7 +173,7 @@ impl Steering {
     /// Determines the commands in effect from now until the new one.
     fn look_back(&mut self, time_s: f64) {
         let delay_s = self.config.aircraft.delay_s();
-        // Where times went back, what was given since makes no sense.
+        // If time went backwards, the commands given since then no longer apply.
         while self.given.back().is_some_and(|(given_s, _)| *given_s >= time_s) {
             self.given.pop_back();
         }

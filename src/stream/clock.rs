@@ -22,7 +22,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// None if the device cannot measure the time of every step.
+    /// `None` if the device cannot measure the time of every step.
     pub(super) fn new(gpu: &Gpu, plan: &Plan) -> Option<Self> {
         let steps = plan.steps(0).count().max(plan.steps(1).count());
         let count = u32::try_from(steps + 1).ok().filter(|count| *count <= wgpu::QUERY_SET_MAX_QUERIES)?;

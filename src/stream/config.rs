@@ -21,7 +21,7 @@ pub enum OnLoss {
 pub struct StreamConfig {
     /// The number of frames that may be in flight (submitted and not yet taken), 1 to 8.
     pub in_flight: usize,
-    /// The time that a frame may take from its submission on. None for no limit.
+    /// The time that a frame may take from its submission on. `None` for no limit.
     pub deadline: Option<Duration>,
     /// The behaviour when the GPU is lost a second time.
     pub on_loss: OnLoss,

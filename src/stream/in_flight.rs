@@ -121,7 +121,7 @@ impl<P> InFlight<P> {
     }
 }
 
-/// A frame's deadline; None if it is beyond the clock's range.
+/// A frame's deadline; `None` if it is beyond the clock's range.
 pub(super) fn due(from: Instant, deadline: Option<Duration>) -> Option<Instant> {
     from.checked_add(deadline?)
 }

@@ -77,10 +77,10 @@ pub struct Done<'a, P> {
     pub frame: u64,
     /// The payload that was submitted with it.
     pub payload: P,
-    /// The number of the frame that it is paired with: the previous one, unless that one was dropped. None for a first
-    /// frame.
+    /// The number of the frame that it is paired with: the previous one, unless that one was dropped. `None` for a
+    /// first frame.
     pub previous: Option<u64>,
-    /// The outputs of the pair. None for a first frame.
+    /// The outputs of the pair. `None` for a first frame.
     pub outputs: Option<&'a Outputs>,
     /// Time from the submit to the return of the wait.
     pub latency: Duration,

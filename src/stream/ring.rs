@@ -12,7 +12,7 @@ use crate::plan::{Fill, Given, Plan};
 pub(super) struct Slot {
     /// The inputs, one after the other. Mapped whenever no submission holds it.
     pub(super) upload: Buffer,
-    /// The outputs, then the clock's ticks; None if nothing is read.
+    /// The outputs, then the clock's ticks; `None` if nothing is read.
     pub(super) readback: Option<Buffer>,
     /// The submission that holds the buffers.
     pub(super) submission: Option<SubmissionIndex>,

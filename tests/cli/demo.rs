@@ -18,7 +18,7 @@ const FILES: [&str; 9] = [
     "truth.png",
 ];
 
-/// A second of flight, on the CPU.
+/// A second of flight on the CPU.
 fn demo(folder: &Path, args: &[&str]) -> Ended {
     let first = ["demo", "--size", "160x120", "--seconds", "1", "--backend", "cpu"];
     program(folder, &[&first, args].concat())
@@ -31,7 +31,7 @@ fn the_page_shows_the_pair_and_the_flight_and_needs_nothing_beside_itself() {
     let ended = demo(folder, &["-o", "d"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert_eq!(ended.stdout.lines().last(), Some("d/index.html"), "{}", ended.stdout);
-    // What is no terminal gets plain lines: nothing that moves the cursor.
+    // Without a terminal, progress is plain lines without control characters.
     for text in [&ended.stdout, &ended.stderr] {
         assert!(!text.contains(['\r', '\u{1b}']), "{text:?}");
     }
@@ -49,14 +49,14 @@ fn the_page_shows_the_pair_and_the_flight_and_needs_nothing_beside_itself() {
     assert_eq!(names, FILES);
 
     let page = fs::read_to_string(folder.join("d/index.html")).unwrap();
-    // No address but those of pictures that are part of it, and of what SVG is.
+    // No addresses, except those of embedded images and of the SVG namespace.
     for (at, _) in page.match_indices("src=\"").chain(page.match_indices("href=")) {
         assert!(page[at..].starts_with("src=\"data:image/"), "{}", &page[at..at + 60]);
     }
     for outside in ["http:", "https:", "url(\"", "@import", "<link", "<iframe"] {
         assert!(!page.contains(outside), "{outside}");
     }
-    // Backend and figures, as the output has them.
+    // The backend and the figures, as in the output.
     let figure = |name: &str| {
         let line = ended.stdout.lines().find(|line| line.starts_with(name));
         line.unwrap_or_else(|| panic!("{name}: {}", ended.stdout)).split_whitespace().collect::<Vec<_>>()
@@ -66,7 +66,7 @@ fn the_page_shows_the_pair_and_the_flight_and_needs_nothing_beside_itself() {
     for told in [&backend, &format!("{endpoint} px"), angular.trim_end_matches(','), "city", "seed 4"] {
         assert!(page.contains(told), "{told}");
     }
-    // Thirty frames, a second of them at 30 Hz, of two pictures each; those that stand there first, and the pair's.
+    // Thirty frames, a second at 30 Hz, of two images each; the frame shown first; and the pair's images.
     assert_eq!(page.matches("\"data:image/jpeg;base64,").count(), 60 + 2 + 7);
 }
 
@@ -84,7 +84,7 @@ fn as_json_the_figures_stand_alone() {
     assert_eq!((&flight["why"], &flight["outcome"]), (&Value::Null, &Value::Null));
     let [error_px, clearance_m] =
         [&told["accuracy"]["aee_px"], &flight["least_clearance_m"]].map(|value| value.as_f64().unwrap());
-    // A flow of nothing is some 0.4 px off at this size, and the wall is 40 m ahead.
+    // Zero flow has an error of some 0.4 px at this size, and the wall is 40 m ahead.
     assert!(error_px < 0.2 && (5.0..40.0).contains(&clearance_m), "{told}");
 }
 

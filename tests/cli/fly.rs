@@ -72,7 +72,7 @@ fn the_log_tells_the_flight_from_beginning_to_end() {
     for (number, frame) in frames.iter().enumerate() {
         assert_eq!(frame["frame"], number);
         let time_s = frame["time_s"].as_f64().unwrap();
-        // To the last bit: what begins at 1 s begins with frame 30.
+        // Exactly: a fault that begins at 1 s begins with frame 30.
         assert!(time_s == number as f64 / 30.0 && header["frame_s"] == FRAME_S);
         for vector in ["position_ned_m", "velocity_ned_m_s", "roll_pitch_yaw_rad", "rate_body_rad_s"] {
             assert_eq!(frame[vector].as_array().unwrap().len(), 3, "{vector}");
@@ -132,8 +132,8 @@ fn a_video_shows_every_frame_and_changes_nothing() {
             before.clone_from(&image);
         }
         assert_eq!(video.frames_read(), frames.len().div_ceil(3) as u64);
-        // The same flight again without it, into the same folder: leftovers of the first one would be taken for the
-        // second's.
+        // The same flight again without --measure, into the same folder: files left by the first one would be mistaken
+        // for the second's.
         let whole = fs::read(folder.join("a/flight.jsonl")).unwrap();
         assert!(matches!(program(folder, &args).code, Some(0)));
         assert!(bytes == fs::read(folder.join("a/flight.y4m")).unwrap(), "{sensor:?}");
@@ -370,7 +370,7 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--size", "1x1"], &["--size is 1×1, expected at least 2×2"]);
     fly(&["--size", "16384x2"], &["16384×2", "rectangle"]);
     fly(&["--fault", "gyro-bias=5", "--sensor", "depth"], &["gyro-bias=5:0 with the sensor depth"]);
-    fly(&["--fault", "gyro-bias=1e300"], &["bias of the gyro", "2005"]);
+    fly(&["--fault", "gyro-bias=1e300"], &["gyro bias", "2005"]);
     fly(&["--truth-flow", "--sensor", "depth"], &["--truth-flow"]);
     fly(&["--world-file", "a.json"], &["--world-file", "--world"]);
     refused(&["fly", "--world-file", "a.json", "--seed", "1"], &["--world-file", "--seed"]);

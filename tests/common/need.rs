@@ -1,8 +1,8 @@
-//! What a test needs that not every machine has: a GPU, a data set, a tool.
+//! The needs of tests that not every machine meets: a GPU, a data set, a tool.
 //!
-//! Without it the test is skipped, which is said on standard error and counted: each need adds a line to the file that
-//! `VIEWSPHERE_TEST_REPORT` names, and `tests/run` sums them up. Where `VIEWSPHERE_REQUIRE` has the need's first word
-//! (`gpu`, `data`, or both with a comma) the test fails instead.
+//! If a need is not met, the test is skipped. Standard error says so, and each need adds a line to the file that
+//! `VIEWSPHERE_TEST_REPORT` names, which `tests/run` summarizes. If `VIEWSPHERE_REQUIRE` contains the need's first word
+//! (`gpu`, `data`, or both with a comma), the test fails instead.
 
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -12,7 +12,7 @@ use std::sync::{Mutex, OnceLock};
 
 use viewsphere::gpu::{Gpu, GpuOptions};
 
-/// What a test does without the thing that it needs.
+/// What remains of a test whose need is not met.
 #[derive(Clone, Copy)]
 pub(crate) enum Without {
     /// Nothing: it returns.
@@ -47,7 +47,8 @@ fn shared_gpu() -> Result<Gpu, String> {
     GPU.get_or_init(open).clone()
 }
 
-/// Passes on what was found, and counts it; an error says why it was not. To be called on the test's own thread.
+/// Returns what was found, and reports it; an error is the reason why it was not. Must be called on the test's own
+/// thread.
 #[track_caller]
 pub(crate) fn found<T, E: Display>(need: &str, found: Result<T, E>, without: Without) -> Option<T> {
     let word = need.split(' ').next().unwrap_or_default();
@@ -70,7 +71,7 @@ pub(crate) fn found<T, E: Display>(need: &str, found: Result<T, E>, without: Wit
     }
 }
 
-/// The words of `VIEWSPHERE_REQUIRE`.
+/// The words in `VIEWSPHERE_REQUIRE`.
 fn required() -> &'static [String] {
     static REQUIRED: OnceLock<Vec<String>> = OnceLock::new();
     REQUIRED.get_or_init(|| {
@@ -87,25 +88,25 @@ fn required() -> &'static [String] {
     })
 }
 
-/// Adds a line to the report, if there is one: test, need and what came of it, with tabs between.
+/// Adds a line to the report, if there is one: test, need and result, separated by tabs.
 fn report(need: &str, status: &str) {
     let Some(path) = std::env::var_os("VIEWSPHERE_TEST_REPORT") else { return };
     let thread = std::thread::current();
     let test = thread.name().filter(|name| *name != "main");
     let test = test.unwrap_or_else(|| panic!("{need} is asked for outside of a test's own thread"));
     let line = format!("{}::{test}\t{need}\t{status}\n", env!("CARGO_CRATE_NAME"));
-    // One write of a short line at the file's end stays whole, whatever other threads and processes write.
+    // Appending a short line in one write is atomic, whatever other threads and processes write.
     let file = OpenOptions::new().append(true).create(true).open(&path);
     let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
     written.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
 
-/// Says something once in a process, past the capture of what a test prints.
+/// Prints a message once per process, bypassing the capture of a test's output.
 fn say_once(line: String) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     let mut said = SAID.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     if !said.contains(&line) {
-        // Nowhere to say that standard error is closed.
+        // If standard error is closed, there is nowhere to report it.
         let _ = writeln!(std::io::stderr(), "{line}");
         said.insert(line);
     }

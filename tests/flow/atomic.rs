@@ -18,7 +18,7 @@ fn names(folder: &Path) -> Vec<String> {
 
 fn broken(path: &Path) -> viewsphere::Result<()> {
     write_atomic(path, |out| {
-        // More than any buffer holds, so that a part is already on disk.
+        // Larger than any buffer, so that a part is already on disk.
         out.write_all(&vec![7; 1 << 20]).unwrap();
         Err(Error::io(path, std::io::Error::other("the disk is full")))
     })
@@ -61,11 +61,11 @@ fn what_nobody_writes_any_more_goes_with_the_next_file_of_its_name() {
     for name in others.iter().chain(&[".a.txt.4000000000-1.tmp", ".a.txt.7-0.tmp"]) {
         fs::write(folder.join(name), b"part").unwrap();
     }
-    // One of them is being written.
+    // One of them is in use.
     let held = fs::OpenOptions::new().write(true).open(folder.join(others[0])).unwrap();
     held.lock().unwrap();
     write_atomic(folder.join("a.txt"), |out| {
-        // Nor is the temporary file of the file itself taken for an abandoned one.
+        // The temporary file of the file itself must not be mistaken for an abandoned one.
         write_bytes(folder.join("a.txt"), b"first").unwrap();
         out.write_all(b"second").map_err(|source| Error::io("a.txt", source))
     })

@@ -11,8 +11,8 @@ use viewsphere::kernels::{remap, undistort_map};
 
 use crate::data;
 
-/// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the
-/// picture, which is why no file with it would be accepted; up to there its values can be compared.
+/// OpenCV 4.13's rational calibration of a wide GoPro. Its denominator has a root 58° from the axis, inside the image,
+/// so that no file with it is accepted. Up to there its values can be compared.
 fn gopro() -> Camera {
     let lens = [
         -0.06174823299398439,
@@ -55,7 +55,7 @@ fn rays_are_those_of_opencv() {
     for row in rows(&folder.join("gopro_undistort_points.csv")) {
         let [u, v, x, y, r_x, r_y, r_z, _] = row[..] else { panic!("{row:?}") };
         let ray = camera.ray([u, v]);
-        // Just before the root the image is stretched without bound; beyond it OpenCV goes on, with a numerator and a
+        // Just before the root the image is stretched without bound; beyond it OpenCV continues, with a numerator and a
         // denominator below 0.
         if x.hypot(y) > limit {
             assert_eq!(ray, None, "{u} {v}");

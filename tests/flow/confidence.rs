@@ -64,7 +64,7 @@ fn error_falls_as_confidence_rises_where_a_third_is_flat() {
     });
     for (name, flow) in settings() {
         let all = deciles(flow, &frames, &scene);
-        // A third of the pixels shows nothing, so among three tenths there is no order, and the fourth is mixed: it has the
+        // A third of the pixels has no texture, so three tenths are in no order, and the fourth is mixed, as it has the
         // border of the flat part. From there on errors fall, and the best tenth is far better than each flat one.
         let (flat, rest) = all.split_at(3);
         assert!(flat.iter().all(|error| *error > 5.0 * rest[6]), "{name}: {all:?}");

@@ -9,7 +9,7 @@ use viewsphere::kernels::test_inputs::Random;
 use crate::need;
 use crate::pair::{On, flow};
 
-/// Random bytes: no two windows alike.
+/// Random bytes, so that no two windows are alike.
 fn noise(size: Size, format: PixelFormat, seed: u32) -> Image {
     let mut random = Random::new(seed);
     let data = (0..size.pixels() * format.bytes()).map(|_| (256.0 * random.next()) as u8).collect();
@@ -28,7 +28,7 @@ fn finite(field: &FlowField) -> bool {
     field.data.as_flattened().iter().all(|d| d.is_finite())
 }
 
-/// Wide enough that the rows are distributed over threads, with three levels.
+/// Wide enough for rows to be distributed over threads, with three levels.
 const LARGE: Size = Size::new(203, 151);
 
 fn same_twice(on: On<'_>) {

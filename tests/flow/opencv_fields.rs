@@ -13,8 +13,9 @@ use crate::pair::{On, flow};
 use crate::{data, need};
 
 /// The largest allowed distance of a vector from OpenCV's. The promise for any pair is 10⁻⁴ px in the mean and 10⁻² px
-/// in 99.9 of 100 vectors; these pairs are well conditioned, so that a tighter bound holds: OpenCV's own fields move by
-/// some 1e-5 px with the processor's instructions; ours were 4e-5 px away at most, and another GPU rounds otherwise.
+/// for 99.9 % of the vectors. These pairs are well conditioned, so that a tighter bound holds: OpenCV's own fields vary
+/// by some 1e-5 px with the processor's instruction set, ours were at most 4e-5 px away, and other GPUs round
+/// differently.
 const BOUND: Bound = Bound { absolute: 2e-4, relative: 0.0, own: Vec::new() };
 
 /// The largest allowed mean distance of vectors from OpenCV's, px: 1.4e-6 was measured.
@@ -81,7 +82,7 @@ fn case(folder: &Path, line: &str) -> Case {
     }
 }
 
-/// The length of the difference at each pixel, against none.
+/// The length of the difference at each pixel.
 fn distance(expected: &FlowField, found: &FlowField, bound: &Bound) -> Difference {
     let distance = endpoint_error(expected, found).unwrap();
     compare(&vec![0.0; distance.data.len()], &distance.data, bound)

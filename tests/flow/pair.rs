@@ -39,7 +39,7 @@ pub(crate) struct Beside<'a> {
     pub(crate) certainty: Option<[&'a Plane; 2]>,
 }
 
-/// The flow from the first picture to the second.
+/// The flow from the first image to the second.
 pub(crate) fn flow(
     on: On<'_>,
     algorithm: impl Into<Algorithm>,

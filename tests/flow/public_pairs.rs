@@ -11,8 +11,8 @@ use viewsphere::io::{flo, picture};
 use crate::pair::{On, flow};
 use crate::{data, need};
 
-/// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, which is half of that at most; the rest, a tenth of a
-/// unit, is what our fields' distance from OpenCV's may add.
+/// The table's figures are rounded to 10⁻³ px and 10⁻² degrees, an error of at most half a unit. The remaining tenth of
+/// a unit is for our fields' distance from OpenCV's.
 const BOUNDS: Errors = [0.0006, 0.006];
 
 /// Mean endpoint error in pixels and mean angular error in degrees.
@@ -29,8 +29,8 @@ struct Pair {
 
 const MASK: Option<&str> = Some("yosemite/derived_mask_land.png");
 
-/// A table of errors of OpenCV 4.13's fields, not of ours. Sequences of pictures have the truth of one frame, to which
-/// it is compared whichever pair the frame belongs to; the sky, which has none, is masked out.
+/// A table of errors of OpenCV 4.13's fields, not of ours. Image sequences have the truth of one frame, to which every
+/// pair's field is compared. The sky has none and is masked out.
 const PAIRS: [Pair; 5] = [
     Pair {
         name: "Yosemite 9 to 10",

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the golden files beside it: image pairs and the fields OpenCV finds between them.
+"""Makes the golden files beside it: image pairs and OpenCV's flow fields between them.
 
     python -m venv v && v/bin/pip install opencv-python-headless==4.13.0.92 numpy==2.4.6
     v/bin/python tests/golden/make.py            # writes *.pgm, *.flo and cases.csv
-    v/bin/python tests/golden/make.py --check    # writes nothing, compares with what is there
+    v/bin/python tests/golden/make.py --check    # writes nothing, compares with the existing files
 
 Nothing is random and nothing is real data: scene.py computes texture and motion. The images are
 the same bytes everywhere. The fields depend on the instruction set OpenCV picks at run time, by
@@ -27,7 +27,7 @@ BOX, GAUSSIAN = "box", "gaussian"
 COLUMNS = ("name image0 image1 pyr_scale levels winsize iterations poly_n poly_sigma window init "
            "flow").split()
 
-# name: (width, height, seed, strength of the motion, first column that has texture)
+# name: (width, height, seed, strength of the motion, first textured column)
 PAIRS = {
     "200x150": (200, 150, 1, 1.0, 0),
     "129x97": (129, 97, 2, 1.0, 0),

@@ -1,4 +1,4 @@
-"""A made-up scene for tests and benches: band-limited texture under a smooth known motion.
+"""A synthetic scene for tests and benches: band-limited texture under a smooth known motion.
 
 The texture is a continuous function of the plane (octaves of value noise on hashed integer
 lattices, blended with a quintic), so the second image is the texture sampled through the motion

@@ -24,7 +24,7 @@ fn mutant(kernel: &Kernel, from: &str, to: &str) -> Kernel {
     Kernel { source: kernel.source.replacen(from, to, 1).leak(), ..*kernel }
 }
 
-/// Mistakes that leave a shader valid: only its results show them.
+/// Mistakes that leave a shader valid, so that only its results show them.
 #[rustfmt::skip]
 const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&luma::KERNEL, "19235u", "19236u"),

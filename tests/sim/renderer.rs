@@ -176,7 +176,8 @@ fn pictures_are_free_of_aliasing() {
         let squares: Vec<f64> = (0..size.pixels()).filter(|i| is_smooth(*i)).map(square).collect();
         let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
         println!("{name}: {rms:.2} gray levels rms of {} pixels", squares.len());
-        // A mean over a pixel takes a seventh off an octave of 14 levels and 3 pixels; aliased octaves differ by 14 each.
+        // The mean over a pixel takes a seventh off an octave of 14 levels and 3 pixels; aliased octaves differ by 14
+        // each.
         assert!(squares.len() > 5000 && rms < 3.5, "{name}: {rms}");
     }
 }

@@ -222,7 +222,8 @@ fn pictures_are_free_of_aliasing() {
         }
         let rms = (differences.iter().sum::<f64>() / differences.len() as f64).sqrt();
         println!("{name}: {rms:.2} gray levels rms");
-        // A mean over a pixel takes a seventh off an octave of 14 levels and 3 pixels; aliased octaves differ by 14 each.
+        // The mean over a pixel takes a seventh off an octave of 14 levels and 3 pixels; aliased octaves differ by 14
+        // each.
         assert!(rms < 3.5, "{name}: {rms}");
     }
 }

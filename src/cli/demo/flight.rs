@@ -1,4 +1,4 @@
-//! The made-up flight.
+//! The demo's flight.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -11,15 +11,16 @@ use crate::report::flight::FlightFilm;
 use crate::sim::Course;
 use crate::sim::flight::{FRAME_S, Flight, FlightConfig, FlightFrame, Outcome, Record};
 
-/// About how many frames are drawn for the page, however long the flight.
+/// The approximate number of frames in the page's film.
 const STILLS: u64 = 150;
-/// The frames that tell whether an adapter is fast enough: these, after the first ones, with which it warms up.
+/// The frames that are timed to decide whether an adapter is fast enough, after the first ones, in which it warms up.
 const TRIED: usize = 12;
 const WARM_UP: usize = 2;
-/// What a frame may take an adapter that computes on the CPU: with more, a flight of ten seconds would take over a dozen.
+/// The longest median frame time allowed to an adapter that computes on the CPU, milliseconds: with more, a flight of
+/// ten seconds would take over twelve.
 const MOST_MS: f64 = 40.0;
 
-/// What is flown, and how long.
+/// The flight to fly.
 pub(super) struct Plan<'a> {
     pub(super) course: &'a Course,
     pub(super) config: &'a FlightConfig,
@@ -27,7 +28,7 @@ pub(super) struct Plan<'a> {
     pub(super) quiet: bool,
 }
 
-/// A flight, or its beginning.
+/// A flight, possibly cut short.
 pub(super) struct Flown {
     pub(super) adapter: String,
     pub(super) why: Option<String>,
@@ -38,16 +39,16 @@ pub(super) struct Flown {
     film: FlightFilm,
 }
 
-/// What becomes of flying with an adapter.
+/// The result of an attempt to fly on an adapter.
 enum Tried {
     Flown(Box<Flown>),
-    /// What a frame takes, in milliseconds.
+    /// The adapter is too slow: the median frame time, milliseconds.
     TooSlow(f64),
 }
 
 impl Plan<'_> {
-    /// Flies on a backend, whose name for the reader is given. Where it may be `replaced`, and is slower than the CPU backend
-    /// would be, that one flies.
+    /// Flies on a backend, whose name as text is `adapter`. If it may be `replaced` and is a software adapter that is
+    /// too slow, the CPU backend flies instead.
     pub(super) fn fly(&self, backend: &Backend, adapter: &str, replaced: bool) -> Result<Flown> {
         let software = matches!(backend, Backend::Gpu(gpu) if gpu.adapter().software);
         let most_ms = (replaced && software).then_some(MOST_MS);
@@ -56,8 +57,8 @@ impl Plan<'_> {
             Tried::TooSlow(frame_ms) => frame_ms,
         };
         let why = format!(
-            "The flight was computed by the CPU backend: {adapter} took {frame_ms:.0} ms for a frame of it, more than the \
-             {MOST_MS:.0} ms that the demo allows an adapter which computes on the CPU itself."
+            "The flight was computed by the CPU backend: {adapter} took {frame_ms:.0} ms per frame, more than the \
+             {MOST_MS:.0} ms that the demo allows to an adapter that itself computes on the CPU."
         );
         if !self.quiet {
             print::note(&why);
@@ -101,7 +102,7 @@ impl Plan<'_> {
         Ok(Tried::Flown(Box::new(flown)))
     }
 
-    /// A bar where there is a terminal, else a line for every other second of flight.
+    /// Reports progress: with a bar on a terminal, otherwise with a line for every other second of flight.
     fn say(&self, bar: &ProgressBar, seen: &FlightFrame<'_>) {
         let record = seen.record;
         if !bar.is_hidden() {
@@ -140,7 +141,7 @@ impl Flown {
     }
 }
 
-/// What a frame takes in the median, if that is too much.
+/// The median frame time in milliseconds, if it exceeds the limit.
 fn too_slow(costs: &Costs, most_ms: f64) -> Option<f64> {
     let tried = costs.frames().iter().skip(WARM_UP);
     let mut times_ms: Vec<f64> = tried.map(|cost| 1e3 * cost.total().as_secs_f64()).collect();
@@ -148,7 +149,7 @@ fn too_slow(costs: &Costs, most_ms: f64) -> Option<f64> {
     times_ms.get(times_ms.len() / 2).copied().filter(|time_ms| !(*time_ms <= most_ms))
 }
 
-/// A bar over the frames, on standard error where that is a terminal.
+/// A bar over the frames, on standard error if that is a terminal.
 fn progress(frames: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("flying {bar:40} {pos}/{len} frames, {elapsed}");
     ProgressBar::new(frames).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))

@@ -28,13 +28,13 @@ use crate::sim::flight::{FRAME_S, FlightConfig};
 /// Show flow, time to contact and steering on one page.
 ///
 /// Computes the flow of a synthetic pair and compares it with the known motion; then flies through a simulated world on
-/// nothing but the flow of its camera's images, a gyro and an airspeed sensor. Both are shown on one self-contained page,
-/// index.html: open it in a browser. The last line of output is its path.
+/// nothing but the flow of its camera's images, a gyro and an airspeed sensor. Both are shown on one self-contained
+/// page, index.html: open it in a browser. The last line of output is its path.
 ///
 /// Computes on any adapter, also on a software adapter such as lavapipe; without one, on the CPU backend. If a software
 /// adapter is too slow for the flight and was not asked for, the CPU backend flies; page and output say so.
 ///
-/// Written beside the page are the pair's frame_0.png, frame_1.png, flow.flo, color.png, truth.png (both to one scale),
+/// Beside the page are the pair's frame_0.png, frame_1.png, flow.flo, color.png and truth.png (both on one scale),
 /// arrows.png, error.png (white is 1 px or more) and confidence.png.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -45,22 +45,23 @@ Examples:
   viewsphere demo --size 1280x720 --preset accurate
   viewsphere demo --backend cpu --json")]
 pub(super) struct Demo {
-    /// Folder to write into; it is made if it is not there. Files of an earlier demo are replaced, others of these names not
+    /// Folder to write into, created if missing. Files of an earlier demo are replaced, other files of these names are
+    /// not
     #[arg(short, long, value_name = "FOLDER", default_value = "demo")]
     output: PathBuf,
-    /// Size of the pair's pictures
+    /// Image size of the pair
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     size: Size,
-    /// The world to fly through, with its parameters (see `viewsphere fly --help`)
+    /// World to fly through, with its parameters (see `viewsphere fly --help`)
     #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "city")]
     world: CourseKind,
-    /// Which one of its kind
+    /// Seed of the world
     #[arg(long, value_name = "N", default_value_t = 4, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// How long to fly, 0.1 to 120 s; the flight may end before
+    /// Duration of the flight, 0.1 to 120 s; it may end earlier
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     seconds: f64,
-    /// Say nothing while it works
+    /// Print no progress and no notes
     #[arg(long)]
     quiet: bool,
     /// Print the figures as JSON
@@ -73,7 +74,7 @@ pub(super) struct Demo {
 }
 
 const PAGE: &str = "index.html";
-/// In so many bytes from its beginning it says what it was made by.
+/// The generator is named within this many bytes from the beginning of the page.
 const HEAD: u64 = 1024;
 
 #[derive(Serialize)]
@@ -94,12 +95,12 @@ struct Report<'a> {
 #[derive(Serialize)]
 struct FlightFigures<'a> {
     backend: &'a str,
-    /// Why that is another backend than the pair's; null if it is the same.
+    /// Why it differs from the pair's backend; `null` if it does not.
     why: Option<&'a str>,
     world: &'a str,
     seed: u64,
     time_s: f64,
-    /// How it ended; null if it was still going on.
+    /// How the flight ended; `null` if it was still flying.
     outcome: Option<&'static str>,
     least_clearance_m: f64,
     timing: Timing,
@@ -113,7 +114,7 @@ impl Demo {
         }
         let course = self.world.course(self.seed)?;
         let mut config = FlightConfig::default();
-        // To be drawn: nothing is steered by it.
+        // The flow is read back for the page only.
         config.pipeline.read_flow = true;
         input::folder(&self.output)?;
         self.spare()?;
@@ -131,7 +132,7 @@ impl Demo {
         let flown = plan.fly(&backend, &pair.shown.adapter, self.backend.is_free())?;
         let page = DemoReport { pair: &pair.shown, flight: flown.report(&course, &config) }.html()?;
         input::within(&self.output, || {
-            // First, since by this page the files of a demo are known as such.
+            // The page comes first, as it marks the folder's files as those of a demo.
             write_bytes(self.output.join(PAGE), page.as_bytes())?;
             pair.write(&self.output)
         })?;
@@ -139,7 +140,7 @@ impl Demo {
         Ok(Outcome::Done)
     }
 
-    /// Checks that the files which would be replaced are those of a demo.
+    /// Checks that files to be replaced belong to an earlier demo.
     fn spare(&self) -> Result<()> {
         let mut head = Vec::new();
         let page = File::open(self.output.join(PAGE));
@@ -188,9 +189,9 @@ impl Demo {
         let mut text = format!(
             "backend    {}\n\
              accuracy   mean endpoint error {:.4} px, mean angular error {:.3}°, {:.2} % over 1 px\n\
-             speed      {median_ms:.2} ms a frame, {fps:.0} frames a second at {}\n\
+             speed      median {median_ms:.2} ms per frame, {fps:.0} frames per second at {}\n\
              colours    {:.4} px in full colour\n\
-             flight     {world}, seed {}: {ended} after {:.1} s, {:.2} m clear at least\n\
+             flight     {world}, seed {}: {ended} after {:.1} s, least clearance {:.2} m\n\
              on         {}\n\
              parts      {}\n\
              frames     {}\n",
@@ -210,7 +211,7 @@ impl Demo {
         if let Some(why) = &flown.why {
             text += &format!("why        {why}\n");
         }
-        text += &format!("pictures   in {}\n{}", self.output.display(), page.display());
+        text += &format!("images     in {}\n{}", self.output.display(), page.display());
         print::text(&text)
     }
 }

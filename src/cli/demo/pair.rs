@@ -1,4 +1,4 @@
-//! The made-up pair: its flow, its errors, and how fast they come.
+//! The demo's pair: its flow, the error, and the frame rate.
 
 use std::path::Path;
 
@@ -14,12 +14,12 @@ use crate::report::{DemoPair, arrows, colour_wheel};
 
 use crate::cli::flow::gray;
 
-/// Frames that are streamed for the speed, beside the first two.
+/// Frames streamed to measure the frame rate, beside the first two.
 const STREAMED: u32 = 20;
 /// The endpoint error that is white in `error.png`, in pixels.
 const WHITE_ERROR: f32 = 1.0;
 
-/// The pair, and what of it goes to files alone.
+/// The pair as the page shows it, and the parts that are only written to files.
 pub(super) struct Pair {
     pub(super) shown: DemoPair,
     flow: FlowField,
@@ -55,7 +55,7 @@ impl Pair {
         let (colours, _) = colour_wheel(&flow, Some(scale_px))?;
         let mut error = endpoint_error(&truth, &flow)?;
         error.data.iter_mut().for_each(|error| *error /= WHITE_ERROR);
-        // Long enough to be seen, and not so long that they cross.
+        // Long enough to be visible, and short enough not to cross.
         let arrows = arrows(&frames[0].frame()?, &flow, 16, 16.0 / scale_px)?;
         let frame_ms = stream(&mut engine, &scene)?;
         let shown = DemoPair {
@@ -84,7 +84,7 @@ impl Pair {
     }
 }
 
-/// What a frame takes in a stream: median and longest, milliseconds.
+/// The time per frame in a stream: median and longest, milliseconds.
 fn stream(engine: &mut Engine, scene: &Scene) -> Result<[f64; 2]> {
     let mut times_ms = Vec::new();
     for number in 2..2 + STREAMED {

@@ -1,4 +1,4 @@
-//! A flight as JSON lines: what it was, each frame, and how it ended. Nothing of it differs from run to run.
+//! The log of a flight as JSON lines: its settings, each frame, and how it ended. The same flight has the same log.
 
 use serde::Serialize;
 
@@ -13,13 +13,13 @@ use crate::sim::flight::{FRAME_S, Flight, Record, Summary};
 use crate::sphere::ExtraOutputs;
 use crate::steer::{Command, Source};
 
-/// What the flight was: all that it takes to repeat it.
+/// The settings of the flight: everything needed to repeat it.
 #[derive(Serialize)]
 struct Header<'a> {
     viewsphere: &'static str,
-    /// Of the whole configuration and the course.
+    /// The fingerprint of the whole configuration and the course.
     fingerprint: String,
-    /// What drew the pictures and what computed the flow; null where there are no pictures.
+    /// The backends that render the images and compute the flow; `null` for a sensor without images.
     backends: Option<&'a [String; 2]>,
     world: &'a str,
     seed: u64,
@@ -43,7 +43,7 @@ struct Header<'a> {
     altitude_m: [f64; 2],
 }
 
-/// A frame. What is not known is `null`.
+/// A frame. Unknown values are `null`.
 #[derive(Serialize)]
 struct FrameLine<'a> {
     frame: u64,
@@ -74,7 +74,7 @@ struct Angles {
     climb_rad: f64,
 }
 
-/// How it ended.
+/// How the flight ended.
 #[derive(Debug, Serialize)]
 pub(super) struct End {
     outcome: &'static str,
@@ -91,12 +91,12 @@ pub(super) struct End {
     measured: Option<MeasuredFigures>,
 }
 
-/// The line that a log begins with.
+/// The first line of a log.
 pub(super) fn header(flight: &Flight, setup: &SetupArgs, backends: Option<&[String; 2]>) -> Result<String> {
     let (course, config): (&Course, _) = (flight.course(), flight.config());
     let (body, gusts, vanes) = setup.names();
     let size = config.camera.size;
-    // What is read back to be drawn and what is only measured are no part of the flight.
+    // The outputs for drawing and measuring do not affect the flight.
     let mut flown = config.clone();
     flown.pipeline.read_flow = false;
     (flown.measure, flown.pipeline.fields) = (false, ExtraOutputs::default());

@@ -1,4 +1,4 @@
-//! What a flight has measured, held against the truth.
+//! The measurements of a flight against ground truth.
 
 use std::path::{Path, PathBuf};
 
@@ -10,32 +10,33 @@ use crate::io::picture;
 use crate::report::{FULL_DIVERGENCE_HZ, divergence_strip};
 use crate::sim::flight::{Divergences, Flight, FlightFrame, Measured};
 
-/// The picture's name in the flight's folder.
+/// The image's file name in the flight's folder.
 pub(super) const PICTURE: &str = "divergence.png";
 
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Against the truth")]
+#[command(next_help_heading = "Comparison with ground truth")]
 pub(super) struct MeasureArgs {
-    /// Hold the flow of images against the true one in every frame, and draw divergence.png: the measured divergence of the
-    /// flow on the view sphere beside the true one, red where things come nearer, gray where it is not known
+    /// Compare the flow of images with ground truth in every frame, and draw divergence.png: the measured divergence of
+    /// the flow on the view sphere beside the true one, red where surfaces approach, gray where it is unknown
     #[arg(long)]
     pub(super) measure: bool,
-    /// When divergence.png is drawn [default: when half of the way is done]; the last frame before, if the flight ends first
+    /// Time of divergence.png, in seconds [default: half of the course]; the last frame before, if the flight ends
+    /// earlier
     #[arg(long, value_name = "SECONDS", requires = "measure", allow_negative_numbers = true)]
     picture_at: Option<f64>,
 }
 
-/// The divergences that are to be drawn.
+/// Keeps the divergences to draw.
 pub(super) struct Picture {
     at_s: Option<f64>,
     half_m: f64,
     side: u32,
-    /// With the time they are of.
+    /// The divergences with their time, seconds.
     kept: Option<(f64, Divergences)>,
     done: bool,
 }
 
-/// What is written of it: null where nothing is known.
+/// The measurements as JSON; unknown values are `null`.
 #[derive(Debug, Serialize)]
 pub(super) struct MeasuredFigures {
     better_half_error_px: Option<f64>,
@@ -46,7 +47,7 @@ pub(super) struct MeasuredFigures {
 }
 
 impl MeasureArgs {
-    /// What keeps the divergences, if they are to be drawn.
+    /// The recorder of the divergences, if they are to be drawn.
     pub(super) fn picture(&self, flight: &Flight) -> Result<Option<Picture>> {
         if let Some(at_s) = self.picture_at.filter(|at_s| !(*at_s >= 0.0 && at_s.is_finite())) {
             return Err(Error::parameter("--picture-at", at_s, "0 or above"));
@@ -72,29 +73,30 @@ impl Picture {
         self.kept = Some((record.time_s, divergences.clone()));
     }
 
-    /// Writes the picture, and says what is in it.
+    /// Writes the image, and describes it in a line of text.
     pub(super) fn write(&self, folder: &Path) -> Result<String> {
         let path: PathBuf = folder.join(PICTURE);
         let Some((time_s, divergences)) = &self.kept else {
-            return Ok("picture    none: no frame was measured".to_owned());
+            return Ok("image      none: no frame was measured".to_owned());
         };
         picture::write_png(&path, &divergence_strip(divergences, self.side, *time_s)?)?;
         Ok(format!(
-            "picture    {}: divergence at {time_s:.2} s, full colour at ±{FULL_DIVERGENCE_HZ} /s",
+            "image      {}: divergence at {time_s:.2} s, full colour at ±{FULL_DIVERGENCE_HZ} /s",
             path.display()
         ))
     }
 }
 
-/// What was measured and drawn, to read.
+/// The measurements and the image, as text.
 pub(super) fn text(measured: Option<&Measured>, picture: Option<String>) -> Option<String> {
     let known = |value: Option<f64>, scale: f64, digits: usize| {
         value.map_or("?".to_owned(), |value| format!("{:.digits$}", scale * value))
     };
     let figures = measured.map(|measured| {
         format!(
-            "flow       {} px off in the better half of what is trusted, {} px in all of it, {:.0} % of the view\n\
-             contact    {} % off in {} cells that are met within 0.7 to 4 s (all medians)",
+            "flow       median error {} px in the more confident half of the trusted cells, {} px in all of them, \
+             {:.0} % of the view\n\
+             contact    median error {} % of the time to contact, over {} cells with 0.7 to 4 s to contact",
             known(measured.better_half_error_px, 1.0, 3),
             known(measured.trusted_error_px, 1.0, 3),
             100.0 * measured.trusted,

@@ -1,4 +1,4 @@
-//! `viewsphere fly`: a flight through a made-up world on what the view says.
+//! `viewsphere fly`: a flight through a simulated world, steered by what its sensor sees.
 
 mod cues;
 mod log;
@@ -33,22 +33,22 @@ use crate::sim::flight::{self, Fault, Flight, FlightConfig, MAX_LATENCY_FRAMES, 
 use crate::sim::{Course, CourseKind};
 use crate::steer::{Danger, Policy, SteerParams};
 
-/// Fly through a made-up world on what the view says, and write down how that went.
+/// Fly through a simulated world, steered by what the sensor sees, and record the flight.
 ///
-/// Each frame of 30 Hz is drawn, its flow computed and steered by, until the goal is reached or something else ends the
-/// flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end and wires, with parameters after colons
-/// where others than the defaults are wanted, or one is read from a file. The same arguments give the same flight: on the
-/// same adapter flight.jsonl and flight.y4m are the same byte for byte. What a frame cost, in timing.json and report.html,
-/// is another time.
+/// Each frame, at 30 Hz, is rendered, its flow computed, and a command derived from it, until the goal is reached or
+/// something else ends the flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end and
+/// wires, with parameters after colons, or a file. The same arguments give the same flight: on the same adapter
+/// flight.jsonl and flight.y4m are identical byte for byte. Computing times, in timing.json and report.html, differ.
 ///
-/// Written into the folder: flight.jsonl, a JSON object a line: first what the flight was (version, world, seed, all
-/// settings, and a fingerprint of the whole configuration), then each frame (frame, time_s, position_ned_m,
-/// velocity_ned_m_s, roll_pitch_yaw_rad, rate_body_rad_s, airspeed_m_s, clearance_m, progress_m, offset_m from the middle of
-/// the way, invalid: null or why there is no cue, coverage 0 to 1, heading_error_rad, contact_s and true_contact_s along the
-/// motion, measured: null without --measure, source: cue, held or recovery, command, danger 0 to 1, acting: the command that acts after the latency), last how
-/// it ended (outcome: reached, crashed, left-band or timed-out; and figures); timing.json, what the parts of a frame cost on
-/// this machine; report.html, the whole flight on a page that needs nothing beside itself; and flight.y4m, a video (10 Hz) of
-/// what is seen and made of it, a map and figures. It is not compressed: some 25 MB for each second of flight.
+/// Files in the folder: flight.jsonl, one JSON object per line: first the settings (version, world, seed, all options,
+/// and a fingerprint of the whole configuration); then each frame (frame, time_s, position_ned_m, velocity_ned_m_s,
+/// roll_pitch_yaw_rad, rate_body_rad_s, airspeed_m_s, clearance_m, progress_m, offset_m from the centre line, invalid:
+/// null or why there is no valid cue, coverage 0 to 1, heading_error_rad, contact_s and true_contact_s along the
+/// motion, measured: null without --measure, command, source: cue, held or recovery, danger 0 to 1, acting: the command
+/// in effect after the latency); last how the flight ended (outcome: reached, crashed, left-band or timed-out; and
+/// figures). timing.json: the computing times of the parts of a frame on this machine. report.html: the whole flight on
+/// one self-contained page. flight.y4m: a video (10 Hz) of the camera's images with the results, a map and figures; it
+/// is not compressed, some 25 MB per second of flight.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -64,40 +64,40 @@ Examples:
 
 Exit codes: 0 the goal was reached, 1 it was not, 2 an error, 130 stopped by a signal.")]
 pub(super) struct Fly {
-    /// The world, with its parameters
+    /// World, with its parameters
     #[arg(long, value_name = "WORLD[:PARAMETER=VALUE]...", default_value = "forest")]
     world: CourseKind,
-    /// Which one of its kind
+    /// Seed of the world
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = whole::<u64>)]
     seed: u64,
-    /// The world from a file of JSON, made by --save-world or by hand: docs/worlds.md has the format. A small one:
+    /// Read the world from a JSON file, written by --save-world or by hand (format: docs/worlds.md). A small one:
     /// {"format": "viewsphere course", "version": 1, "name": "pole", "start_ned_m": [0, 0, -10], "length_m": 60,
-    /// "altitude_m": [2, 30], "surfaces": [{"kind": "ground"}, {"kind": "cylinder", "base_m": [40, 0, 0],
-    /// "top_m": [40, 0, -25], "radius_m": 0.5}]}
+    /// "altitude_m": [2, 30], "surfaces": [{"kind": "ground"}, {"kind": "cylinder", "base_m": [40, 0, 0], "top_m": [40,
+    /// 0, -25], "radius_m": 0.5}]}
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "seed"])]
     world_file: Option<PathBuf>,
     /// Write the world of --world and --seed to a file for --world-file, then fly
     #[arg(long, value_name = "FILE", conflicts_with = "world_file")]
     save_world: Option<PathBuf>,
-    /// How a command is found: none, balance, potential, heading or arc
+    /// Steering policy: none, balance, potential, heading or arc
     #[arg(long, value_name = "POLICY", default_value_t)]
     policy: Policy,
-    /// What counts as near: divergence, nearness or blend
+    /// Measure of danger: divergence, nearness or blend
     #[arg(long, value_name = "DANGER", default_value_t)]
     danger: Danger,
-    /// What is steered by: true depth, true flow, noisy-flow, or the flow of images
+    /// What the vehicle steers by: true depth, true flow, noisy-flow, or the flow of images
     #[arg(long, value_name = "SENSOR", default_value_t)]
     sensor: Sensor,
     /// The same as --sensor flow
     #[arg(long, conflicts_with = "sensor")]
     truth_flow: bool,
-    /// Airspeed, m/s: the airframe flies level at 7.7 to 25, a turn at 0.1 to 1000
+    /// Airspeed, m/s: the airframe can hold its altitude at 7.7 to 25; with --body turn 0.1 to 1000
     #[arg(long, value_name = "M_S", allow_negative_numbers = true, default_value_t = 12.0)]
     speed: f64,
-    /// Size of the pictures
+    /// Image size
     #[arg(long, value_name = "WxH", default_value = "320x240")]
     size: Size,
-    /// Frames from an exposure until its command acts, at most 30
+    /// Frames from an exposure until its command takes effect, at most 30
     #[arg(
         long,
         value_name = "N",
@@ -106,19 +106,20 @@ pub(super) struct Fly {
         value_parser = whole_within(0, MAX_LATENCY_FRAMES)
     )]
     latency_frames: u32,
-    /// What goes wrong and when, in seconds; may be given several times. KIND is frozen, black, dropped[=SHARE] (of the
-    /// frames, 0.2 if not said), gyro-lost, gyro-bias[=DEG_S] (5 if not said), nan (in the frames' times) or device-lost
-    /// (without UNTIL: it is opened again, the second time not). True depth shows gyro-lost alone, true flow gyro-bias too,
-    /// images all
+    /// Fault with its beginning and end in seconds; may be given several times. KIND is frozen, black, dropped[=SHARE]
+    /// (share of the frames, 0.2 by default), gyro-lost, gyro-bias[=DEG_S] (5 by default), nan (in the frames' times)
+    /// or device-lost (without UNTIL: the device is reopened the first time, not the second). With the sensor depth
+    /// only gyro-lost is possible, with true flow also gyro-bias, with images all of them
     #[arg(long = "fault", value_name = "KIND[:FROM[..UNTIL]]")]
     faults: Vec<Fault>,
-    /// Folder to write into; it is made if it is not there. Files of an earlier flight are replaced, others of these names not
+    /// Folder to write into, created if missing. Files of an earlier flight are replaced, other files of these names
+    /// are not
     #[arg(short, long, value_name = "FOLDER", default_value = "flight")]
     output: PathBuf,
-    /// Make no flight.y4m; what an earlier flight has left of it in the folder is removed
+    /// Write no flight.y4m, and remove one left by an earlier flight
     #[arg(long)]
     no_video: bool,
-    /// Say nothing while it flies
+    /// Print no progress and no notes
     #[arg(long)]
     quiet: bool,
     /// Print the summary as JSON
@@ -179,7 +180,7 @@ impl Fly {
         Ok(course)
     }
 
-    /// Flies to the end, into a video where there is to be one.
+    /// Flies to the end, and writes the video if there is one.
     fn fly(
         &self,
         flight: &mut Flight,
@@ -211,13 +212,13 @@ impl Fly {
             measure: self.measure.measure,
             ..self.setup.config()
         };
-        // To be drawn: nothing is steered by it.
+        // The flow is read back for the video only.
         config.pipeline.read_flow = !self.no_video;
         config
     }
 }
 
-/// A value that is shown without decimals; 0 has no sign.
+/// A value rounded for display. Adding 0 removes the sign of −0.
 fn shown(value: f64) -> f64 {
     value.round() + 0.0
 }

@@ -1,4 +1,4 @@
-//! The files of a flight, and what is said of it.
+//! The files of a flight, and its summary as text.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -24,7 +24,7 @@ pub(super) const VIDEO: &str = "flight.y4m";
 /// All files of a flight.
 pub(super) const FILES: [&str; 5] = [LOG, TIMING, PAGE, VIDEO, PICTURE];
 
-/// Checks that the files which would be replaced in a folder are those of a flight.
+/// Checks that files to be replaced in the folder belong to an earlier flight.
 pub(super) fn spare(folder: &Path) -> Result<()> {
     let begins = |line: String| line.starts_with("{\"viewsphere\":");
     let log = File::open(folder.join(LOG)).map(BufReader::new);
@@ -39,17 +39,17 @@ pub(super) fn spare(folder: &Path) -> Result<()> {
     }
 }
 
-/// A flight that is over.
+/// A completed flight.
 pub(super) struct Flown<'a> {
     pub(super) flight: &'a Flight,
     pub(super) recorder: &'a Recorder,
     pub(super) summary: &'a Summary,
-    /// What drew the pictures and what computed the flow; none where there are no pictures.
+    /// The backends that rendered the images and computed the flow; `None` for a sensor without images.
     pub(super) names: Option<[String; 2]>,
 }
 
 impl Flown<'_> {
-    /// Writes all files but the video, which was written while it flew, and says how the flight ended.
+    /// Writes all files but the video, which was written during the flight, and returns the summary as text.
     pub(super) fn write(&self, folder: &Path, setup: &SetupArgs) -> Result<String> {
         let Recorder { records, costs, picture, .. } = self.recorder;
         let timing = costs.timing(self.names.clone());
@@ -65,7 +65,7 @@ impl Flown<'_> {
         for (name, text) in [LOG, TIMING, PAGE].into_iter().zip(texts) {
             write_bytes(folder.join(name), text.as_bytes())?;
         }
-        // That of an earlier flight would be taken for this one's.
+        // An image left by an earlier flight would be mistaken for this one's.
         remove(folder.join(PICTURE))?;
         let picture = picture.as_ref().map(|picture| picture.write(folder)).transpose()?;
         let told = self.text(folder, &timing);
@@ -73,7 +73,7 @@ impl Flown<'_> {
         Ok(std::iter::once(told).chain(measured).collect::<Vec<_>>().join("\n"))
     }
 
-    /// The flight as lines of JSON.
+    /// The log as JSON lines.
     fn log(&self, setup: &SetupArgs) -> Result<String> {
         let mut lines = vec![log::header(self.flight, setup, self.names.as_ref())?];
         for record in &self.recorder.records {
@@ -90,9 +90,9 @@ impl Flown<'_> {
             .map_or(String::new(), |file| format!(", and a video of {:.0} MB", 1e-6 * file.len() as f64));
         format!(
             "outcome    {} after {:.1} s and {:.0} m\n\
-             clearance  {:.2} m at least, over {:.2} m for 95 % of the time\n\
-             way        {:.1} m flown, {:.1} % of it towards the goal\n\
-             control    {:.1} °/s of roll (root mean square)\n\
+             clearance  least {:.2} m, 5th percentile {:.2} m\n\
+             path       {:.1} m flown, {:.1} % of it towards the goal\n\
+             control    roll rate {:.1} °/s (root mean square)\n\
              cues       {}\n\
              speed      {}\n\
              log        in {}{video}",
@@ -110,12 +110,12 @@ impl Flown<'_> {
         )
     }
 
-    /// What computed, for the reader; without pictures nothing but the CPU does.
+    /// The backends as text. Without images only the CPU computes.
     fn computed_on(&self) -> String {
         match &self.names {
             None => Backend::Cpu.name(),
             Some([renderer, flow]) if renderer == flow => flow.clone(),
-            Some([renderer, flow]) => format!("{flow}, pictures on {renderer}"),
+            Some([renderer, flow]) => format!("{flow}, images on {renderer}"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What is kept of a flight while it is flown, and told meanwhile.
+//! Records a flight, and reports its progress.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -11,13 +11,13 @@ use crate::error::Result;
 use crate::sim::Course;
 use crate::sim::flight::{FRAME_S, Flight, FlightFrame, Record, Summary};
 
-/// What is kept while it flies.
+/// The records of a flight in progress.
 pub(super) struct Recorder {
     pub(super) records: Vec<Record>,
     pub(super) costs: Costs,
     pub(super) picture: Option<Picture>,
     bar: ProgressBar,
-    /// Whether a line a second is said where there is no bar.
+    /// Whether to print a line per second if there is no bar.
     talks: bool,
 }
 
@@ -27,7 +27,7 @@ impl Recorder {
         Self { records: Vec::new(), costs: Costs::default(), picture, bar, talks: !quiet }
     }
 
-    /// Flies to the end and keeps every frame.
+    /// Flies to the end and records every frame.
     pub(super) fn fly(&mut self, flight: &mut Flight, mut video: Option<&mut Video<'_>>) -> Result<Summary> {
         loop {
             let ended = flight.step(|seen| {
@@ -41,7 +41,7 @@ impl Recorder {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
     }
@@ -57,13 +57,13 @@ impl Recorder {
         self.say(seen.record);
     }
 
-    /// A bar where there is a terminal, else a line for each second of flight.
+    /// Reports progress: with a bar on a terminal, otherwise with a line per second of flight.
     fn say(&self, record: &Record) {
         let state = match &record.invalid {
             Some(why) => format!("no cue: {why}"),
             None => match record.contact_s {
                 Some(contact_s) => format!("contact in {contact_s:.1} s"),
-                None => "nothing ahead".to_owned(),
+                None => "no contact ahead".to_owned(),
             },
         };
         if !self.bar.is_hidden() {
@@ -71,7 +71,7 @@ impl Recorder {
             self.bar.set_message(state);
         } else if self.talks && (record.time_s % 1.0) < 0.5 * FRAME_S {
             print::note(format_args!(
-                "{:.0} s, {:.0} m on the way, {:.1} m clear, bank {:+.0}°, {state}",
+                "{:.0} s, progress {:.0} m, clearance {:.1} m, bank {:+.0}°, {state}",
                 record.time_s,
                 shown(record.progress_m),
                 record.clearance_m,
@@ -81,7 +81,7 @@ impl Recorder {
     }
 }
 
-/// A bar over the metres of the way, on standard error where that is a terminal.
+/// A bar over the course's length in metres, on standard error if that is a terminal.
 fn progress(course: &Course) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} m, {elapsed}, {msg}");
     ProgressBar::new(course.length_m.ceil() as u64)

@@ -1,4 +1,4 @@
-//! What flies, and in what air: for all flights of a command.
+//! The options for the vehicle and the air, shared by the commands that fly.
 
 use std::str::FromStr;
 
@@ -9,28 +9,28 @@ use crate::error::{Error, Result};
 use crate::sim::flight::{Body, FlightConfig};
 use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors};
 
-/// What flies, and in what air.
+/// The options for the vehicle and the air.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Vehicle and air")]
 pub(in crate::cli) struct SetupArgs {
-    /// What flies
+    /// Body of the vehicle
     #[arg(long, value_enum, default_value_t = BodyArg::Airframe)]
     body: BodyArg,
-    /// Where the air moves to, m/s north, east and down, each within ±100
+    /// Velocity of the air, m/s towards north, east and down, each within ±100
     #[arg(long, value_name = "N,E,D", allow_hyphen_values = true, default_value = "0,0,0")]
     wind: Ned,
-    /// Gusts on top of it
+    /// Gusts on top of the wind
     #[arg(long, value_enum, default_value_t = GustsArg::None)]
     gusts: GustsArg,
-    /// Take the direction of motion from vanes, in place of the view. They tell it through the air and not over the ground,
-    /// so that a flight in wind, which carries it aside, steers worse by them
+    /// Measure the direction of motion with vanes instead of the flow. Vanes measure it relative to the air, not to the
+    /// ground: in wind, which makes the flight drift, steering is worse with them
     #[arg(long)]
     vanes: bool,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum BodyArg {
-    /// A rigid body with an inner loop
+    /// A rigid body with an inner control loop
     Airframe,
     /// A point in coordinated turns
     Turn,
@@ -38,15 +38,15 @@ enum BodyArg {
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum GustsArg {
-    /// Still air, but for the wind
+    /// Steady wind only
     None,
-    /// Light turbulence at 50 m of height
+    /// Light turbulence at an altitude of 50 m
     Light,
-    /// Moderate turbulence at 50 m of height
+    /// Moderate turbulence at an altitude of 50 m
     Moderate,
 }
 
-/// Three numbers with commas between them.
+/// Three numbers separated by commas.
 #[derive(Clone, Copy, Debug)]
 struct Ned(DVec3);
 
@@ -65,7 +65,7 @@ impl FromStr for Ned {
 }
 
 impl SetupArgs {
-    /// The configuration that all flights begin with.
+    /// The base configuration of all flights.
     pub(in crate::cli) fn config(&self) -> FlightConfig {
         FlightConfig {
             body: match self.body {
@@ -83,7 +83,7 @@ impl SetupArgs {
         }
     }
 
-    /// What was chosen, to read.
+    /// The options, as text.
     pub(in crate::cli) fn text(&self) -> String {
         let (body, gusts, vanes) = self.names();
         let [north, east, down] = self.wind.0.to_array();
@@ -91,7 +91,7 @@ impl SetupArgs {
         format!("body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}")
     }
 
-    /// The value of `--body`, `--gusts` and `--vanes`.
+    /// The values of `--body`, `--gusts` and `--vanes`.
     pub(in crate::cli) fn names(&self) -> (String, String, bool) {
         let name = |value: Option<clap::builder::PossibleValue>| {
             value.map(|value| value.get_name().to_owned()).unwrap_or_default()

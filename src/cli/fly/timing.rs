@@ -1,4 +1,4 @@
-//! What the frames of a flight cost: it differs from run to run.
+//! The computing time of a flight's frames. It differs from run to run.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::quantile::{above_share, sorted};
 use crate::sim::flight::Cost;
 
-/// From frame to frame at 30 Hz.
+/// The frame interval at 30 Hz, milliseconds.
 const REAL_TIME_MS: f64 = 33.0;
 
 /// The costs of all frames so far.
@@ -19,17 +19,17 @@ pub(in crate::cli) struct Costs {
 
 #[derive(Serialize)]
 pub(in crate::cli) struct Timing {
-    /// What drew the pictures and what computed the flow; null where there are no pictures.
+    /// The backends that rendered the images and computed the flow; `null` for a sensor without images.
     backends: Option<[String; 2]>,
     frames: usize,
-    /// Frames that took longer than a camera of 30 Hz gives them.
+    /// The number of frames that took longer than the frame interval at 30 Hz.
     over_33_ms: usize,
     total_ms: Spread,
     sensor_ms: Spread,
     pipeline_ms: Spread,
     steer_ms: Spread,
     vehicle_ms: Spread,
-    /// From a picture's submission until its cue was there; null where there are none.
+    /// The time from an image's submission to its cue; `null` for a sensor without images.
     latency_ms: Option<Spread>,
 }
 
@@ -48,7 +48,7 @@ impl Costs {
         self.latencies.push(latency);
     }
 
-    /// What each frame cost, in their order.
+    /// The cost of each frame, in order.
     pub(in crate::cli) fn frames(&self) -> &[Cost] {
         &self.frames
     }
@@ -71,20 +71,20 @@ impl Costs {
 }
 
 impl Timing {
-    /// What the parts take, in the median.
+    /// The median times of the parts, as text.
     pub(in crate::cli) fn parts(&self) -> String {
         let [sight, pipeline, steer] =
             [self.sensor_ms, self.pipeline_ms, self.steer_ms].map(|part| part.median);
         format!(
-            "{sight:.2} ms to render a picture, {pipeline:.2} ms from it to sectors, {steer:.2} ms to a command"
+            "rendering {sight:.2} ms, image to sectors {pipeline:.2} ms, sectors to command {steer:.2} ms (medians)"
         )
     }
 
-    /// What is said of it beside the summary.
+    /// The total time per frame, as text.
     pub(in crate::cli) fn text(&self) -> String {
         let Spread { median, p99 } = self.total_ms;
         format!(
-            "{median:.2} ms a frame, p99 {p99:.2} ms, {} of {} over {REAL_TIME_MS} ms",
+            "median {median:.2} ms per frame, p99 {p99:.2} ms, {} of {} frames over {REAL_TIME_MS} ms",
             self.over_33_ms, self.frames
         )
     }

@@ -1,4 +1,4 @@
-//! A flight's video, written while it is flown.
+//! A flight's video, written during the flight.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,19 +9,19 @@ use crate::io::Y4mWriter;
 use crate::report::flight::FlightVideo;
 use crate::sim::flight::FlightFrame;
 
-/// Every third frame of a flight is drawn: all of them would take three times the space and the time.
+/// Every third frame is drawn: all frames would take three times the space and the time.
 const EVERY: u64 = 3;
-/// Frames in so many seconds.
+/// The video's frame rate as a fraction, Hz.
 const RATE: (u32, u32) = (10, 1);
 
-/// A video that is being written.
+/// A video being written.
 pub(super) struct Video<'a> {
     drawing: FlightVideo,
     writer: Y4mWriter<&'a mut dyn Write>,
 }
 
 impl<'a> Video<'a> {
-    /// `path` is the name for error messages.
+    /// Starts a video. `path` is the name in error messages.
     pub(super) fn new(drawing: FlightVideo, out: &'a mut dyn Write, path: &Path) -> Result<Self> {
         let writer = Y4mWriter::new(out, path, drawing.size(), PixelFormat::Rgb8, RATE)?;
         Ok(Self { drawing, writer })

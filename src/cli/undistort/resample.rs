@@ -64,7 +64,7 @@ fn plan(raw: &Camera, out: &Camera) -> Result<Plan> {
     let (from, to) = (Shape::planar(raw.size, 1), Shape::planar(out.size, 1));
     let mut bufs = Bufs::default();
     let picture = bufs.input("picture", from.len());
-    let still = bufs.constant("no turn", Motion::UNKNOWN.values()[..MOTION_LEN].to_vec());
+    let still = bufs.constant("no rotation", Motion::UNKNOWN.values()[..MOTION_LEN].to_vec());
     let mask = bufs.constant("mask", vec![1.0; from.len()]);
     let places = bufs.computed("map", Shape::planar(out.size, 2));
     let certainty = bufs.computed("certainty", to);

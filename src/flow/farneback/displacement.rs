@@ -17,7 +17,7 @@ pub(super) struct Displacement {
     /// Whether an iteration adds its result to the flow so far.
     adds: bool,
     radius: u32,
-    /// The weight of pixels whose place is outside the second frame.
+    /// The weight of pixels that the flow takes outside the second frame.
     outside: f32,
     window_y: BufId,
     window_x: BufId,
@@ -53,7 +53,7 @@ impl Displacement {
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
             evidence: wanted.confidence.then(|| Evidence {
                 certainty: (!wanted.certainty)
-                    .then(|| bufs.constant("equal certainty", vec![1.0; Shape::planar(finest, 1).len()])),
+                    .then(|| bufs.constant("full certainty", vec![1.0; Shape::planar(finest, 1).len()])),
                 confidence: bufs.computed("confidence", Shape::planar(finest, 1)),
             }),
         }

@@ -24,20 +24,20 @@ pub enum Window {
     Gaussian,
 }
 
-/// The quantity that an iteration's window averages. d is the flow so far, Δb = −½ (b2(x + d) − b1(x)), and A the mean
-/// of both frames'.
+/// The quantity that an iteration's window averages. Here d is the flow so far, Δb = −½ (b2(x + d) − b1(x)), and A is
+/// the mean of both frames' A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Update {
-    /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as Farnebäck and OpenCV do. Where the flow changes within the window, the
-    /// pixels with the most contrast dominate.
+    /// The flow: `(Σ AᵀA)⁻¹ Σ Aᵀ(Δb + A d)`, as in Farnebäck's paper and OpenCV. Where the flow changes within the
+    /// window, the pixels with the most contrast dominate.
     Flow,
     /// The increment of the flow: `d + (Σ AᵀA)⁻¹ Σ AᵀΔb`. Changes within the window that the flow so far contains are
     /// kept, so that a window may be wider for the same detail, and fewer iterations suffice. One to three are
-    /// suitable: each adds finer detail of flow and of noise. With more than one, [`Window::Box`] is refused: it
+    /// suitable: each adds finer detail of flow and of noise. With more than one, [`Window::Box`] is an error: it
     /// inverts the sign of waves a little shorter than itself (its spectrum falls to −0.22 there), and each further
-    /// iteration amplifies them. Where there is no texture at all, as in a cloudless sky, noise remains, where
-    /// [`Update::Flow`] finds nearly zero motion.
+    /// iteration amplifies them. Where there is no texture at all, as in a cloudless sky, noise remains;
+    /// [`Update::Flow`] finds nearly zero motion there.
     Increment,
 }
 
@@ -131,7 +131,7 @@ impl Estimator for Farneback {
         within("iterations", self.iterations, 1, 1000)?;
         within("poly_n", self.poly_n, 1, 32)?;
         if (self.window, self.update) == (Window::Box, Update::Increment) && self.iterations > 1 {
-            let expected = "1 where a box averages increments, as errors grow with each further one, or a Gaussian window";
+            let expected = "1 with a box window of increments, whose errors grow with each iteration, or a Gaussian window";
             return Err(Error::parameter("iterations", self.iterations, expected));
         }
         Ok(())

@@ -24,10 +24,10 @@ impl Normalized {
             bufs.computed(format!("certainty, level {k}, {slot} frames"), Shape::planar(level.size, 1))
         };
         Self {
-            weighted: bufs.computed("gray times certainty", plane),
-            certainty: bufs.computed("certainty in its range", plane),
+            weighted: bufs.computed("weighted gray", plane),
+            certainty: bufs.computed("clamped certainty", plane),
             level: bufs.computed("level's certainty", plane),
-            moments: bufs.computed("moments with certainty", Shape::planar(size, 8)),
+            moments: bufs.computed("weighted moments", Shape::planar(size, 8)),
             expansions: (levels.iter().enumerate())
                 .map(|(k, level)| ["even", "odd"].map(|slot| expansion(bufs, k, level, slot)))
                 .collect(),

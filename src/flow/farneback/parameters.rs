@@ -18,10 +18,10 @@ const fn choice(name: &'static str, help: &'static str, choices: &'static [Choic
 
 impl Parameters for Farneback {
     const NAME: &'static str = "farneback";
-    const ABOUT: &'static str = "polynomial expansions, as OpenCV's calcOpticalFlowFarneback";
+    const ABOUT: &'static str = "polynomial expansions, as in OpenCV's calcOpticalFlowFarneback";
     const LIST: &'static [Parameter] = &[
-        number("pyr_scale", "RATIO", "A level's size against the next finer one, above 0 and below 1"),
-        number("levels", "N", "Levels beside the full picture, 0 to 32"),
+        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        number("levels", "N", "Levels beside the full image, 0 to 32"),
         number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
         number("iterations", "N", "Iterations on each level, 1 to 1000"),
         number("poly_n", "PX", "Radius of the polynomial expansion in pixels, 1 to 32"),
@@ -33,26 +33,26 @@ impl Parameters for Farneback {
         choice(
             "window",
             "Shape of the averaging window",
-            &[("box", "All neighbours count the same"), ("gaussian", "Near neighbours count more")],
+            &[("box", "All neighbours have the same weight"), ("gaussian", "Near neighbours have more weight")],
         ),
         choice(
             "update",
-            "What the window averages in each iteration",
+            "Quantity that an iteration's window averages",
             &[
-                ("flow", "The flow, as OpenCV does"),
+                ("flow", "The flow, as in OpenCV"),
                 (
                     "increment",
-                    "What is added to the flow so far: finer detail from a wider window. Takes a Gaussian window, or one \
+                    "The increment of the flow: finer detail with a wider window. Requires a Gaussian window, or one \
                      iteration",
                 ),
             ],
         ),
         choice(
             "outside",
-            "What a pixel counts for where the flow leads out of the second picture",
+            "Treatment of a pixel that the flow takes outside the second image",
             &[
-                ("first", "The first picture stands alone there, as in OpenCV"),
-                ("nothing", "Nothing: the window's other pixels decide"),
+                ("first", "Use the first image alone, as in OpenCV"),
+                ("nothing", "Leave the pixel out: the window's other pixels decide"),
             ],
         ),
     ];
@@ -63,7 +63,7 @@ impl Parameters for Farneback {
         (
             "increment",
             "Half the default's work and less error, except where there is no texture (as in a sky): 1 iteration of \
-             increments, Gaussian winsize 31, nothing from outside the picture",
+             increments, Gaussian winsize 31, outside nothing",
         ),
     ];
 

@@ -1,4 +1,4 @@
-//! A pair of pictures, its flow, and how far that is from the truth.
+//! The demo's pair: its flow and the error.
 
 use image::RgbImage;
 use image::imageops::thumbnail;
@@ -10,16 +10,16 @@ use crate::io::picture;
 use crate::report::colour_wheel;
 use crate::report::html::{data_uri, figure, figures};
 
-/// No picture of the pair is wider in the page.
+/// The largest width of an image in the page.
 const WIDEST: u32 = 640;
 const QUALITY: u8 = 85;
 
-/// The flow of a pair of pictures whose motion is known. All images are 8-bit gray or RGB.
+/// The flow of a pair of images with known motion. All images are 8-bit gray or RGB.
 #[derive(Clone, Debug)]
 pub struct DemoPair {
-    /// The two pictures.
+    /// The two images.
     pub frames: [Image; 2],
-    /// The computed flow as arrows over the first one.
+    /// The computed flow as arrows over the first image.
     pub arrows: Image,
     /// The computed flow as colours.
     pub flow: Image,
@@ -27,15 +27,15 @@ pub struct DemoPair {
     pub truth: Image,
     /// The displacement in full colour, pixels.
     pub scale_px: f32,
-    /// The length of the difference between the two, black to white.
+    /// The endpoint error as gray levels: 0 is black, `white_px` white.
     pub error: Image,
-    /// The difference that is white, pixels.
+    /// The endpoint error that is white, pixels.
     pub white_px: f32,
-    /// How far the computed flow is from the true one.
+    /// The error of the computed flow against the true flow.
     pub accuracy: FlowError,
-    /// What computed it.
+    /// The adapter that computed the flow, as text for people.
     pub adapter: String,
-    /// What a frame takes in a stream of them: median and longest, milliseconds.
+    /// The time per frame in a stream: median and longest, milliseconds.
     pub frame_ms: [f64; 2],
 }
 
@@ -44,12 +44,12 @@ impl DemoPair {
         let e = &self.accuracy;
         let scale = format!("{:.1} px", self.scale_px);
         let pictures = [
-            (&self.frames[0], "The first picture".to_owned(), "The first picture: gray texture and a disc"),
-            (&self.frames[1], "The second picture".to_owned(), "The second picture, a little later"),
+            (&self.frames[0], "The first image".to_owned(), "The first image: gray texture and a disc"),
+            (&self.frames[1], "The second image".to_owned(), "The second image, a little later"),
             (
                 &self.arrows,
                 "The computed flow as arrows".to_owned(),
-                "Arrows over the first picture, one every 16 pixels",
+                "Arrows over the first image, one every 16 pixels",
             ),
             (
                 &self.flow,
@@ -58,13 +58,13 @@ impl DemoPair {
             ),
             (
                 &self.truth,
-                "The true flow, to the same scale".to_owned(),
+                "The true flow, on the same scale".to_owned(),
                 "True flow as colours, to compare with the computed one",
             ),
             (
                 &self.error,
-                format!("Its error: black 0, white {} px and more", self.white_px),
-                "Error of the computed flow: the brighter, the farther from the true one",
+                format!("Endpoint error: 0 is black, {} px or more white", self.white_px),
+                "Endpoint error of the computed flow: brighter is larger",
             ),
         ];
         let mut html = String::from("<div class=\"pictures\">\n");
@@ -75,23 +75,23 @@ impl DemoPair {
         let rows = [
             ("mean endpoint error", format!("{:.4} px", e.aee_px)),
             ("mean angular error", format!("{:.3}°", e.aae_deg)),
-            ("more than 1 px off", format!("{:.2} % of {} pixels", 100.0 * e.r1, e.pixels)),
+            ("error over 1 px", format!("{:.2} % of {} pixels", 100.0 * e.r1, e.pixels)),
         ];
-        let about = format!("Which colour is which direction; the rim is {scale}.");
+        let about = format!("The colour of each direction; the rim is {scale}.");
         let key = embedded(&wheel()?, "The colour wheel of directions", &about)?;
         html += &format!("<div class=\"result\">\n{}{key}</div>\n", figures(&rows));
         Ok(html)
     }
 }
 
-/// A picture that is part of the page.
+/// An image embedded in the page.
 fn embedded(image: &Image, alt: &str, caption: &str) -> Result<String> {
     let image = shrunk(image);
     let uri = data_uri("image/jpeg", &picture::encode_jpeg(&image, QUALITY)?);
     Ok(figure(&uri, image.size, alt, caption))
 }
 
-/// The picture in RGB, and no wider than [`WIDEST`].
+/// The image as RGB, at most [`WIDEST`] pixels wide.
 fn shrunk(image: &Image) -> Image {
     let Size { width, height } = image.size;
     let data: Vec<u8> = match image.format {
@@ -109,13 +109,13 @@ fn shrunk(image: &Image) -> Image {
     Image { size, format: PixelFormat::Rgb8, data: whole.into_raw() }
 }
 
-/// The colours of all directions, longest at the rim.
+/// The colours of all directions, with full saturation at the rim.
 fn wheel() -> Result<Image> {
     const SIDE: u32 = 120;
     let centre = 0.5 * (SIDE - 1) as f32;
     let off = |at: u32| (at as f32 - centre) / centre;
     let rows = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [off(x), off(y)]));
-    // Beyond the rim there is nothing, which is white.
+    // White beyond the rim.
     let inside = |uv: [f32; 2]| if uv[0].hypot(uv[1]) <= 1.0 { uv } else { [0.0; 2] };
     let flow = FlowField { size: Size::new(SIDE, SIDE), data: rows.map(inside).collect() };
     Ok(colour_wheel(&flow, Some(1.0))?.0)

@@ -1,4 +1,4 @@
-//! What changed over a flight.
+//! Plots over the time of a flight.
 
 use super::page::FlightReport;
 use crate::quantile::{nearest, sorted};
@@ -7,61 +7,64 @@ use crate::report::plot::{Curve, Plot, Span, WIDE, range};
 use crate::sim::flight::{Cost, FRAME_S, Record};
 use crate::steer::Source;
 
-/// Heights of the plots and of the strip, pixels.
+/// The height of the plots and of the strip, pixels.
 const HEIGHT: f64 = 190.0;
 const STRIP: f64 = 90.0;
-/// The longest time to contact that is shown, seconds.
+/// The longest time to contact shown, seconds.
 const FAR_S: f64 = 8.0;
-/// Times to contact at which the relative error counts, seconds.
+/// The true times to contact for which the relative error is computed, seconds.
 const COUNTED_S: [f64; 2] = [0.7, 4.0];
 
 type Part = (&'static str, &'static str, fn(&Cost) -> f64);
 
-/// What a frame's parts cost in milliseconds, with their names and classes.
+/// The parts of a frame's cost: name, CSS class, and time in milliseconds.
 pub(super) const PARTS: [Part; 4] = [
-    ("drawing or true flow", "c0", |cost| 1e3 * cost.sensor.as_secs_f64()),
-    ("picture to sectors", "c1", |cost| 1e3 * cost.pipeline.as_secs_f64()),
+    ("rendering or true flow", "c0", |cost| 1e3 * cost.sensor.as_secs_f64()),
+    ("image to sectors", "c1", |cost| 1e3 * cost.pipeline.as_secs_f64()),
     ("steering", "c2", |cost| 1e3 * cost.steer.as_secs_f64()),
     ("vehicle", "c3", |cost| 1e3 * cost.vehicle.as_secs_f64()),
 ];
 
-/// How far the time to contact that was seen is from the true one, as a part of that, at the times that count.
+/// The relative error of the view's time to contact, for true times in [`COUNTED_S`].
 pub(super) fn relative_error(record: &Record) -> Option<f64> {
     let true_s = record.true_contact_s.filter(|true_s| (COUNTED_S[0]..=COUNTED_S[1]).contains(true_s))?;
     Some(record.contact_s? / true_s - 1.0)
 }
 
-/// The curves, under headings.
+/// The plots, under headings.
 pub(super) fn sections(report: &FlightReport<'_>) -> String {
     let over = Over { records: report.records, end_s: report.summary.time_s.max(FRAME_S), width: WIDE };
     let mut html = section(
-        "Room",
-        "Distance from the middle of the vehicle to the nearest surface, and height above the ground.",
+        "Clearance and altitude",
+        "Distance from the vehicle's centre to the nearest surface, and height above the ground.",
         &(over.clearance(report) + &over.altitude(report)),
     );
-    html +=
-        &section("Control", "What acts and what is flown; positive is the right wing down.", &over.bank());
+    html += &section(
+        "Control",
+        "The bank angle commanded and flown; positive is the right wing down.",
+        &over.bank(),
+    );
     html += &section(
         "Time to contact",
-        "Along the direction of motion: as the view says, the median of the sectors around it; in truth, along the one ray, which \
-         hits a thin thing or passes it. And the relative error where the truth is between 0.7 and 4 s, held at the border \
-         beyond 50 %. It is no measure of the flow: that compares cell by cell (fly --measure).",
+        "Along the direction of motion. The measured time is the median of the sectors around it; the true time is that of a \
+         single ray, which may pass beside a thin obstacle. The relative error is shown where the true time is 0.7 to 4 s, \
+         clamped to ±50 %. It does not measure the flow: fly --measure compares that cell by cell.",
         &(over.contact() + &over.error()),
     );
     html += &section(
         "Cues and faults",
-        "Red: no cue, and wings level; amber: no cue, and the last command held; violet: a fault acts. The curve is the share \
-         of the view that is trusted.",
+        "Red: no valid cue, wings level. Amber: no valid cue, last command held. Violet: a fault is active. The curve is the \
+         share of the view that is trusted.",
         &over.validity(report),
     );
     if !report.costs.is_empty() {
-        let about = "Measured while it was flown; the line is the time from frame to frame.";
-        html += &section("What a frame costs", about, &over.cost(report.costs));
+        let about = "Measured during the flight; the line is the frame interval.";
+        html += &section("Computing time per frame", about, &over.cost(report.costs));
     }
     html
 }
 
-/// The time to contact ahead, and the bank, as drawings of this width.
+/// The time to contact ahead, and the bank, as plots of this width.
 #[cfg(feature = "io")]
 pub(in crate::report) fn contact_and_bank(records: &[Record], width: f64) -> [String; 2] {
     let end_s = records.last().map_or(FRAME_S, |record| record.time_s.max(FRAME_S));
@@ -69,11 +72,11 @@ pub(in crate::report) fn contact_and_bank(records: &[Record], width: f64) -> [St
     [over.contact(), over.bank()]
 }
 
-/// Curves over the time of a flight.
+/// Plots over the time of a flight.
 struct Over<'a> {
     records: &'a [Record],
     end_s: f64,
-    /// Of each drawing.
+    /// The width of each plot.
     width: f64,
 }
 
@@ -91,7 +94,7 @@ impl<'a> Over<'a> {
     fn clearance(&self, report: &FlightReport<'_>) -> String {
         let curve = self.curve("clearance", "c0", |record| record.clearance_m);
         let [_, high] = range(self.records.iter().map(|record| record.clearance_m), 2.0);
-        let levels = vec![(report.config.radius_m, "radius of the vehicle")];
+        let levels = vec![(report.config.radius_m, "vehicle radius")];
         Plot { levels, ..self.plot("Clearance", "m", [0.0, high], vec![curve]) }.svg()
     }
 
@@ -99,7 +102,7 @@ impl<'a> Over<'a> {
         let curve = self.curve("altitude", "c2", |record| -record.position_ned_m.z);
         let [low, high] = report.course.altitude_m;
         let y = range(self.records.iter().map(|record| -record.position_ned_m.z), 4.0);
-        let all = [(low, "lowest allowed"), (high, "highest allowed")];
+        let all = [(low, "lower limit"), (high, "upper limit")];
         let levels = all.into_iter().filter(|(level, _)| (y[0]..=y[1]).contains(level)).collect();
         Plot { levels, ..self.plot("Altitude", "m", y, vec![curve]) }.svg()
     }
@@ -118,7 +121,7 @@ impl<'a> Over<'a> {
         let near = |time_s: Option<f64>| time_s.filter(|time_s| *time_s <= FAR_S).unwrap_or(f64::NAN);
         let curves = vec![
             self.curve("true", "c0", |record| near(record.true_contact_s)),
-            self.curve("as seen", "c1", |record| near(record.contact_s)),
+            self.curve("measured", "c1", |record| near(record.contact_s)),
         ];
         self.plot("Time to contact ahead", "s", [0.0, FAR_S], curves).svg()
     }
@@ -165,9 +168,9 @@ impl<'a> Over<'a> {
             })
             .collect();
         let totals = sorted(costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64()));
-        // A few frames that took long, such as the first, do not hide all others.
+        // A few slow frames, such as the first one, must not compress the rest.
         let high = nearest(&totals, 0.99).unwrap_or(0.0).max(1.1e3 * FRAME_S);
-        let levels = vec![(1e3 * FRAME_S, "from frame to frame")];
-        Plot { levels, ..self.plot("Cost", "ms", [0.0, high], curves) }.svg()
+        let levels = vec![(1e3 * FRAME_S, "frame interval")];
+        Plot { levels, ..self.plot("Computing time", "ms", [0.0, high], curves) }.svg()
     }
 }

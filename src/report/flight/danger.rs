@@ -1,4 +1,4 @@
-//! The danger in the directions around, and the way that was chosen through it.
+//! The map of danger, with the chosen arc.
 
 use glam::DVec3;
 
@@ -8,12 +8,12 @@ use crate::sim::flight::FlightFrame;
 use crate::sphere::angles_rad;
 use crate::steer::Arc;
 
-/// Directions of which nothing is known.
+/// The colour of unknown directions.
 const UNKNOWN: [u8; 3] = [14, 16, 20];
-/// Rates below this are drawn as if they were nothing, 1/s.
+/// Rates below this are drawn as 0, 1/s.
 const LEAST_HZ: f64 = 0.1;
 
-/// Draws the map of danger of the steering: left is left, up is up, the middle is the direction of motion.
+/// Draws steering's map of danger, with the direction of motion in the centre.
 pub(super) fn draw(canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
     let map = seen.steering.map();
     let grid = &map.grid;
@@ -52,7 +52,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
     canvas.stroke(&[[x, y - 7.0], [x, y + 7.0]], 2.0, TEXT);
 }
 
-/// Azimuth and elevation of the places along an arc, for who looks level in the direction of a yaw.
+/// Azimuth and elevation of the points of an arc, relative to a level view along a yaw.
 fn directions(arc: &Arc, yaw_rad: f64) -> impl Iterator<Item = [f64; 2]> {
     let (sin, cos) = yaw_rad.sin_cos();
     arc.path_ned_m.iter().map(move |place| {

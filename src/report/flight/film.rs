@@ -1,4 +1,4 @@
-//! A flight frame by frame, for a page that plays it.
+//! A flight as a film, for a page that plays it.
 
 use glam::DVec2;
 
@@ -11,65 +11,65 @@ use crate::report::colours::TIMES;
 use crate::report::overlay::Layers;
 use crate::sim::flight::{Flight, FlightFrame, Record};
 
-/// Quality of the camera's pictures.
+/// JPEG quality of the camera's images.
 const QUALITY: u8 = 62;
 
-/// What a page shows of a flight's frames: the camera's picture with the flow, the same with the sectors, and what it takes
-/// to draw the arc that was chosen and a map.
+/// The film of a flight for a page: per frame the camera's image with the flow, the same with the sectors, and the data
+/// from which the page draws the chosen arc and a map.
 ///
-/// As [`FlightVideo`](super::FlightVideo), but compressed and in parts, so that the page can lay them out; a frame takes some
-/// 30 kB.
+/// It shows the same as [`FlightVideo`](super::FlightVideo), but compressed and in parts that the page lays out. A
+/// frame takes some 30 kB.
 #[derive(Debug)]
 pub struct FlightFilm {
     views: Views,
     pub(super) ground: Ground,
-    /// From one of the frames to the next, in frames of the flight.
+    /// The distance of the film's frames, in frames of the flight.
     pub(super) every: u64,
     pub(super) stills: Vec<Still>,
 }
 
-/// A frame that was drawn.
+/// A frame of the film.
 #[derive(Debug)]
 pub(super) struct Still {
     pub(super) record: Record,
-    /// What the camera sees with the flow over it, JPEG.
+    /// The camera's image with the flow, JPEG.
     pub(super) flow: Vec<u8>,
-    /// The same with the sectors, JPEG.
+    /// The camera's image with the sectors, JPEG.
     pub(super) sectors: Vec<u8>,
-    /// Both sides of the arc that was chosen, in pixels of the picture.
+    /// Both sides of the chosen arc, in pixels of the image.
     pub(super) ribbon: Vec<[[f64; 2]; 2]>,
-    /// The arc from above, from the vehicle along north and east, metres.
+    /// The chosen arc from above: points relative to the vehicle along north and east, metres.
     pub(super) arc_m: Vec<DVec2>,
     pub(super) obstacles: Vec<Ring>,
 }
 
-/// What the steering takes for an obstacle.
+/// An obstacle of the steering.
 #[derive(Debug)]
 pub(super) struct Ring {
-    /// From the vehicle along north and east, metres.
+    /// The position relative to the vehicle along north and east, metres.
     pub(super) off_m: DVec2,
     pub(super) radius_m: f64,
-    /// Which of [`TIMES`] it is met within; their number if later.
+    /// The index of the first of [`TIMES`] that exceeds its time to contact; their number if none does.
     pub(super) time: usize,
 }
 
 impl FlightFilm {
-    /// For a flight from its beginning, of which each frame whose number `every` divides is drawn.
+    /// A film of a flight that has not begun. It takes the frames whose number is a multiple of `every`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for 0.
+    /// [`Error::Parameter`] if `every` is 0.
     pub fn new(flight: &Flight, every: u64) -> Result<Self> {
         if every == 0 {
-            return Err(Error::parameter("every", every, "1 or above"));
+            return Err(Error::parameter("every", every, "at least 1"));
         }
         let ground = Ground::new(flight.course());
         Ok(Self { views: Views::new(flight)?, ground, every, stills: Vec::new() })
     }
 
-    /// Draws a frame, if it is one of those that are drawn.
+    /// Adds a frame, if its number is a multiple of `every`.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`] for a picture or a flow of another camera.
+    /// [`Error::SizeMismatch`] for an image or a flow of another camera.
     pub fn add(&mut self, seen: &FlightFrame<'_>) -> Result<()> {
         if !seen.record.frame.is_multiple_of(self.every) {
             return Ok(());
@@ -95,7 +95,7 @@ impl FlightFilm {
         Ok(())
     }
 
-    /// Width and height of the camera's pictures.
+    /// Width and height of the camera's images.
     pub(super) fn picture_size(&self) -> Size {
         self.views.picture_size()
     }

@@ -1,4 +1,4 @@
-//! What is around a vehicle, from above.
+//! The map: the vehicle's surroundings from above.
 
 use glam::{DVec2, DVec3};
 
@@ -8,15 +8,15 @@ use crate::report::footprint::Footprint;
 use crate::sim::Course;
 use crate::sim::flight::{FlightFrame, Record};
 
-/// What is shown from the lower border to the upper one, metres.
+/// The distance from the lower border to the upper one, metres.
 pub(super) const SPAN_M: f64 = 90.0;
-/// Where the vehicle is, from the left and from the top, as parts of the map.
+/// The vehicle's position from the left and from the top, as shares of the map.
 pub(super) const VEHICLE: [f64; 2] = [0.5, 0.8];
 pub(super) const SOLID: [u8; 3] = [122, 132, 150];
 pub(super) const PATH: [u8; 3] = [90, 170, 255];
 pub(super) const MIDDLE: [u8; 3] = [64, 72, 88];
 
-/// What stands still on a map.
+/// The static part of a map.
 #[derive(Debug)]
 pub(super) struct Ground {
     pub(super) footprints: Vec<Footprint>,
@@ -43,19 +43,19 @@ impl Ground {
         }
     }
 
-    /// A way to north and east as one to the right and towards the goal.
+    /// A vector along north and east, as one to the right and towards the goal.
     pub(super) fn turned(&self, way: DVec2) -> [f64; 2] {
         [way.dot(self.axes[1]), way.dot(self.axes[0])]
     }
 
-    /// The same of a place, from the start.
+    /// A position relative to the start, to the right and towards the goal.
     #[cfg(feature = "io")]
     pub(super) fn offset_from_start(&self, place: DVec2) -> [f64; 2] {
         self.turned(place - self.start_m)
     }
 }
 
-/// A course, and the way flown through it so far.
+/// A course, and the path flown so far.
 #[derive(Debug)]
 pub(super) struct Map {
     ground: Ground,
@@ -67,7 +67,7 @@ impl Map {
         Self { ground: Ground::new(course), path_m: Vec::new() }
     }
 
-    /// Draws what is around; the direction of the goal is up.
+    /// Draws the surroundings, with the goal's direction up.
     pub(super) fn draw(&mut self, canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
         let record = seen.record;
         let here = record.position_ned_m.truncate();
@@ -97,7 +97,7 @@ impl Map {
                 Footprint::Polygon(corners) => {
                     let corners: Vec<_> = corners.iter().map(|corner| place(*corner)).collect();
                     canvas.polygon(&corners, SOLID, 1.0);
-                    // So that a wire is seen.
+                    // The outline makes a wire visible.
                     let closed: Vec<_> = corners.iter().chain(corners.first()).copied().collect();
                     canvas.stroke(&closed, 1.5, SOLID);
                 }
@@ -122,7 +122,7 @@ impl Map {
     }
 }
 
-/// An arrow that points where the nose does.
+/// Draws an arrow in the direction of the nose.
 fn vehicle(canvas: &mut Canvas<'_>, at: [f64; 2], [ahead, right]: [DVec2; 2], record: &Record) {
     let (sin, cos) = record.roll_pitch_yaw_rad[2].sin_cos();
     let nose = DVec2::new(cos, sin);

@@ -1,4 +1,4 @@
-//! A flight to look at: frame by frame as a video or in a page, and as a whole as a page.
+//! Reports of a flight: a video, a film for a page, and a page about the whole flight.
 
 pub(super) mod curves;
 mod danger;

@@ -1,4 +1,4 @@
-//! A flight as a whole, as a page.
+//! The page about a whole flight.
 
 use super::{curves, way};
 use crate::quantile::{nearest, sorted};
@@ -7,26 +7,26 @@ use crate::sim::Course;
 use crate::sim::flight::{Body, Cost, FlightConfig, Measured, Outcome, Record, Sensor, Summary};
 use crate::text::counted;
 
-/// A flight that is over, and what it was flown with.
+/// A completed flight.
 #[derive(Clone, Copy, Debug)]
 pub struct FlightReport<'a> {
-    /// Where it led through.
+    /// The course flown through.
     pub course: &'a Course,
-    /// How it was flown.
+    /// The flight's configuration.
     pub config: &'a FlightConfig,
-    /// What computed, as a name for the reader.
+    /// The backend that computed, as text for people.
     pub backend: &'a str,
-    /// All its frames.
+    /// The records of all frames.
     pub records: &'a [Record],
-    /// How it ended.
+    /// The summary.
     pub summary: &'a Summary,
-    /// What each frame cost, in their order; may be empty.
+    /// The cost of each frame, in order; may be empty.
     pub costs: &'a [Cost],
 }
 
 impl FlightReport<'_> {
-    /// The flight as one page of HTML that needs nothing beside itself: its key figures, the course with the way flown,
-    /// curves over time, and a table.
+    /// The report as a self-contained HTML page: key figures, the course with the path flown, plots over time, and a
+    /// table.
     pub fn html(&self) -> String {
         let Self { course, config, summary, .. } = *self;
         let title = format!("{}, seed {}", course.name, course.seed);
@@ -39,9 +39,9 @@ impl FlightReport<'_> {
             self.backend,
         ));
         body += &self.tiles();
-        let about = "Solid things are gray, the middle of the way is dashed, the dotted line is the goal. The circle is the \
+        let about = "Solids are gray, the centre line is dashed, and the dotted line is the goal. The circle is the \
                      start; a cross is a crash.";
-        body += &section("The way", about, &way::svg(course, self.records, summary.outcome));
+        body += &section("Path", about, &way::svg(course, self.records, summary.outcome));
         body += &curves::sections(self);
         body += &section("Figures", "", &figures(&self.rows()));
         page(&title, &body)
@@ -56,10 +56,10 @@ impl FlightReport<'_> {
             tile("time", format_args!("{time_s:.1} s"), ""),
             tile("least clearance", format_args!("{least_clearance_m:.2} m"), ""),
             tile("path efficiency", format_args!("{:.0} %", 100.0 * self.summary.efficiency()), ""),
-            tile("frames without a cue", format_args!("{:.1} %", 100.0 * invalid), ""),
+            tile("frames without a valid cue", format_args!("{:.1} %", 100.0 * invalid), ""),
         ];
         let median = nearest(&sorted(self.costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64())), 0.5);
-        let cost = median.map(|ms| tile("a frame costs", format_args!("{ms:.1} ms"), ""));
+        let cost = median.map(|ms| tile("computing time per frame", format_args!("{ms:.1} ms"), ""));
         format!("<div class=\"tiles\">\n{}{}</div>\n", tiles.concat(), cost.unwrap_or_default())
     }
 
@@ -71,7 +71,7 @@ impl FlightReport<'_> {
             (
                 "progress",
                 format!(
-                    "{:.2} m, {:.1} % of what was flown",
+                    "{:.2} m, {:.1} % of the distance flown",
                     summary.progress_m,
                     100.0 * summary.efficiency()
                 ),
@@ -79,43 +79,43 @@ impl FlightReport<'_> {
             (
                 "clearance",
                 format!(
-                    "{:.2} m at least, below {:.2} m for a twentieth of the time; the vehicle's radius is {:.2} m",
+                    "least {:.2} m, 5th percentile {:.2} m; the vehicle's radius is {:.2} m",
                     summary.least_clearance_m, summary.low_clearance_m, config.radius_m
                 ),
             ),
             ("roll rate, root mean square", format!("{:.1} °/s", summary.roll_rate_rad_s.to_degrees())),
-            ("frames", format!("{}, {:.1} % without a cue", self.records.len(), 100.0 * summary.invalid)),
+            (
+                "frames",
+                format!("{}, {:.1} % without a valid cue", self.records.len(), 100.0 * summary.invalid),
+            ),
         ];
         if let Some([deviation, mean]) = summary.offset_m {
             rows.push((
-                "right of the middle of the way",
-                format!("{mean:.2} m in the mean, deviation {deviation:.2} m"),
+                "offset to the right of the centre line",
+                format!("mean {mean:.2} m, standard deviation {deviation:.2} m"),
             ));
         }
         let errors = sorted(self.records.iter().filter_map(curves::relative_error).map(f64::abs));
         let count = errors.len();
         if let [Some(median), Some(high)] = [0.5, 0.9].map(|share| nearest(&errors, share)) {
             let text = format!(
-                "{:.1} % in the median, {:.1} % at the 90th percentile of {count} frames with 0.7 to 4 s to go",
+                "median {:.1} %, 90th percentile {:.1} %, over {count} frames with 0.7 to 4 s to contact",
                 100.0 * median,
                 100.0 * high
             );
-            rows.push(("time to contact ahead, sectors against one ray, relative error", text));
+            rows.push(("relative error of the time to contact ahead, sectors against one ray", text));
         }
         if let Some(measured) = &summary.measured {
             rows.extend(measured_rows(measured));
         }
         let headings = sorted(self.records.iter().filter_map(|record| record.heading_error_rad));
         if let Some(median) = nearest(&headings, 0.5) {
-            rows.push(("direction of motion, error", format!("{:.2}° in the median", median.to_degrees())));
+            rows.push(("error of the direction of motion", format!("median {:.2}°", median.to_degrees())));
         }
         for (name, _, part) in curves::PARTS {
             let times = sorted(self.costs.iter().map(part));
             if let [Some(median), Some(high)] = [0.5, 0.99].map(|share| nearest(&times, share)) {
-                rows.push((
-                    name,
-                    format!("{median:.2} ms in the median, {high:.2} ms at the 99th percentile"),
-                ));
+                rows.push((name, format!("median {median:.2} ms, 99th percentile {high:.2} ms")));
             }
         }
         rows.push(("camera", format!("{}", config.camera.size)));
@@ -127,27 +127,31 @@ impl FlightReport<'_> {
     }
 }
 
-/// What `measure` says, where it says something.
+/// The rows for the measured flow, if there are values.
 fn measured_rows(measured: &Measured) -> Vec<(&'static str, String)> {
     let flow = [measured.better_half_error_px, measured.trusted_error_px];
     let flow = if let [Some(better), Some(all)] = flow {
         let trusted = 100.0 * measured.trusted;
         let text = format!(
-            "{better:.3} px in the better half of the trusted cells, {all:.3} px in all ({trusted:.0} %)"
+            "{better:.3} px in the more confident half of the trusted cells, {all:.3} px in all of them \
+             ({trusted:.0} %)"
         );
-        Some(("flow against the true one, medians", text))
+        Some(("median error of the flow", text))
     } else {
         None
     };
     let contact = measured.contact_error.map(|error| {
-        let text =
-            format!("{:.1} % in {} cells with 0.7 to 4 s to go", 100.0 * error, measured.contact_cells);
-        ("time to contact against the true one, cell by cell, median", text)
+        let text = format!(
+            "{:.1} % over {} cells with 0.7 to 4 s to contact",
+            100.0 * error,
+            measured.contact_cells
+        );
+        ("median relative error of the time to contact, cell by cell", text)
     });
     flow.into_iter().chain(contact).collect()
 }
 
-/// What flies, and in what air.
+/// The body and the air, as text.
 fn air(config: &FlightConfig) -> String {
     let body = match config.body {
         Body::Turn(_) => "coordinated turns",
@@ -167,6 +171,6 @@ fn sensor(sensor: Sensor) -> &'static str {
         Sensor::Depth => "true depth",
         Sensor::Flow => "true flow",
         Sensor::NoisyFlow => "true flow with noise",
-        Sensor::Images => "rendered pictures",
+        Sensor::Images => "rendered images",
     }
 }

@@ -1,4 +1,4 @@
-// Plays the film of a flight: its pictures, its map, its figures, and a line through the curves of the page.
+// Plays the film of a flight: its images, map and figures, and a line through the page's plots.
 const film = JSON.parse(document.getElementById("film").textContent);
 const [play, seek, clock, map] = ["play", "seek", "clock", "map"].map((id) => document.getElementById(id));
 const screens = ["flow", "sectors"].map((name) => [document.getElementById(name), film[name]]);
@@ -22,10 +22,10 @@ const count = film.time.length;
 const pairs = (flat) => Array.from({ length: flat.length / 2 }, (_, i) => [flat[2 * i], flat[2 * i + 1]]);
 const path = pairs(film.at);
 let shown = film.shown;
-// When the frame 0 was or would have been shown, in the clock of the animation; none while it stands.
+// The animation clock's time at which frame 0 was, or would have been, shown; null while paused.
 let begun = null;
 
-// A canvas as sharp as the screen, empty, to be drawn on in units of CSS pixels; and its width and height in these.
+// A cleared canvas at the screen's resolution, drawn on in CSS pixels, with its width and height in these.
 function cleared(canvas) {
   const [width, height, dense] = [canvas.clientWidth, canvas.clientHeight, devicePixelRatio];
   [canvas.width, canvas.height] = [Math.round(width * dense), Math.round(height * dense)];

@@ -1,4 +1,4 @@
-//! A film of a flight that is played in a page.
+//! The player of a flight's film, for a page.
 
 use super::film::{FlightFilm, Still};
 use super::script::json;
@@ -6,12 +6,12 @@ use crate::frame::Size;
 use crate::report::colours::{LATER, TIMES};
 use crate::report::html::{data_uri, escape};
 
-/// What plays it: an element for a page's head.
+/// The player's script, as an element for a page's head.
 pub(in crate::report) fn script() -> String {
     format!("<script type=\"module\">\n{}</script>\n", include_str!("player.js"))
 }
 
-/// The player and its pictures. A page can hold one.
+/// The player with its film. A page can hold one.
 pub(in crate::report) fn player(film: &FlightFilm) -> String {
     let stills = &film.stills;
     let shown = interesting(stills);
@@ -29,20 +29,20 @@ pub(in crate::report) fn player(film: &FlightFilm) -> String {
         "flow",
         &still.flow,
         "",
-        "The camera's picture in gray, coloured by its flow",
-        "What the camera sees, and its flow: the colour is the direction, its strength the length.",
+        "The camera's image in gray, with its flow in colours",
+        "The camera's image and its flow: the hue is the direction, the saturation the length.",
     );
     let sectors = screen(
         "sectors",
         &still.sectors,
         "<canvas></canvas>",
-        "The camera's picture in gray, its sectors coloured by time to contact, with the chosen arc as a ribbon",
-        "Its sectors, by time to contact. Cross: the direction of motion. Box: what is met first. Ribbon: the arc that was \
-         chosen.",
+        "The camera's image in gray, its sectors coloured by time to contact, with the chosen arc as a ribbon",
+        "The sectors by time to contact. Cross: the direction of motion. Box: the threat with the earliest contact. Ribbon: the \
+         chosen arc.",
     );
     let map = "<figure class=\"map\"><div class=\"screen\"><canvas id=\"map\" role=\"img\" aria-label=\"A map of the surroundings with obstacles, the \
-               way flown and the chosen arc\"></canvas></div><figcaption>From above, the goal is up. Gray: what is there. Rings: what \
-               the steering takes for obstacles, by time to contact. Blue: the way flown. Turquoise: the chosen arc.\
+               path flown and the chosen arc\"></canvas></div><figcaption>From above, the goal is up. Gray: solids. Rings: the \
+               steering's obstacles, by time to contact. Blue: the path flown. Turquoise: the chosen arc.\
                </figcaption></figure>\n";
     let last = stills.len() - 1;
     format!(
@@ -51,8 +51,8 @@ pub(in crate::report) fn player(film: &FlightFilm) -> String {
          <output id=\"clock\">{:.1} s</output></div>\n\
          <div class=\"player\">\n{flow}{sectors}{map}</div>\n{}\
          <div class=\"tiles\" id=\"readout\">\n{}</div>\n\
-         <p>Space plays and stops, the arrow keys go frame by frame.</p>\n\
-         <noscript><p>Without scripts the page shows this frame alone, and no map.</p></noscript>\n\
+         <p>Space plays and pauses, the arrow keys step by one frame.</p>\n\
+         <noscript><p>Without scripts the page shows only this frame, and no map.</p></noscript>\n\
          <script type=\"application/json\" id=\"film\">{}</script>\n",
         still.record.time_s,
         legend(),
@@ -61,7 +61,7 @@ pub(in crate::report) fn player(film: &FlightFilm) -> String {
     )
 }
 
-/// What is shown before it is played: the frame of the widest bank that was decided by the view.
+/// The frame shown first: the one with the steepest bank commanded by the view.
 fn interesting(stills: &[Still]) -> usize {
     let bank = |still: &Still| {
         let seen = still.record.invalid.is_none();
@@ -71,7 +71,7 @@ fn interesting(stills: &[Still]) -> usize {
     found.map_or(0, |(at, _)| at)
 }
 
-/// The figures of a frame, in the order in which the script has them.
+/// The names of a frame's figures, in the order of the script.
 const FIGURES: [&str; 5] =
     ["contact ahead", "true contact", "bank flown", "bank and climb of the arc", "clearance"];
 
@@ -101,7 +101,7 @@ fn readout(still: &Still) -> String {
     FIGURES.into_iter().zip(texts(still)).map(tile).collect()
 }
 
-/// Which colour is which time to contact.
+/// The legend of the colours of times to contact.
 fn legend() -> String {
     let key = |[r, g, b]: [u8; 3], text: String| {
         format!("<li><i style=\"background:rgb({r},{g},{b})\"></i>{text}</li>\n")

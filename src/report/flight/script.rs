@@ -1,4 +1,4 @@
-//! What a page's script plays a film of.
+//! The data of a film for the player's script.
 
 use std::fmt::Display;
 
@@ -9,8 +9,8 @@ use crate::report::footprint::Footprint;
 use crate::report::html::data_uri;
 use crate::sim::flight::FRAME_S;
 
-/// All pictures and figures as JSON, with `texts` of each frame, none of which may have to be escaped. Places are to the
-/// right and towards the goal, in metres.
+/// The film as JSON, with the `texts` of each frame, which must need no escapes. Positions are to the right and towards
+/// the goal, in metres.
 pub(super) fn json(film: &FlightFilm, shown: usize, texts: impl Fn(&Still) -> Vec<String>) -> String {
     let each = |of: &dyn Fn(&Still) -> String| list(film.stills.iter().map(of));
     let ground = &film.ground;
@@ -53,7 +53,7 @@ pub(super) fn json(film: &FlightFilm, shown: usize, texts: impl Fn(&Still) -> Ve
     format!("{{{}}}", members.join(",\n"))
 }
 
-/// What stands still, as far as it comes on the map.
+/// The static shapes near the flown path, as far as they appear on the map.
 fn shapes(film: &FlightFilm) -> String {
     let ground = &film.ground;
     let near = |footprint: &&Footprint| {
@@ -102,7 +102,7 @@ fn list(items: impl IntoIterator<Item = impl Display>) -> String {
     format!("[{}]", items.join(","))
 }
 
-/// Places one after the other, both coordinates of each.
+/// The coordinates of points, one point after the other.
 fn flat(places: impl IntoIterator<Item = [f64; 2]>) -> String {
     list(places.into_iter().flatten().map(|coordinate| format!("{coordinate:.1}")))
 }

@@ -1,4 +1,4 @@
-//! A flight frame by frame.
+//! A flight as a video.
 
 use super::views::{Views, blank};
 use crate::error::Result;
@@ -8,35 +8,36 @@ use crate::report::colours::{FRAME, TEXT, WRONG};
 use crate::sim::flight::{Flight, FlightFrame, Record};
 use crate::steer::Source;
 
-/// About how wide the camera's picture is drawn, and the map beside it.
+/// The approximate width of the camera's image and of the map, pixels.
 const PICTURE_PX: u32 = 640;
 const MAP_PX: usize = 480;
-/// Heights of the map of danger and of the lines of text.
+/// Heights of the map of danger and of the lines of text, pixels.
 const DANGER_PX: usize = 210;
 const TEXT_PX: usize = 54;
-/// Between the parts.
+/// The gap between the parts, pixels.
 const GAP_PX: usize = 8;
 
-/// Draws the frames of a flight for a video: what the camera sees with what the pipeline makes of it
-/// ([`Overlay`](crate::report::Overlay)), the horizon and the arc that was chosen; the danger in the directions around; a map; a few figures.
+/// Draws the frames of a flight for a video: the camera's image with the pipeline's results
+/// ([`Overlay`](crate::report::Overlay)), the horizon and the chosen arc; the map of danger; a map of the surroundings;
+/// and a few figures.
 ///
-/// In the map and in the picture of danger red is what is met within 1 s, orange within 2 s, yellow within 4 s, green within
-/// 8 s. In the map the direction of the goal is up, solid things are gray, rings are what the steering takes for obstacles.
+/// In both maps, red is a time to contact within 1 s, orange within 2 s, yellow within 4 s, green within 8 s. On the
+/// map of the surroundings the goal's direction is up, solids are gray, and rings are the steering's obstacles.
 ///
-/// Where the sensor is no camera, the picture is what a camera would see, drawn for the eye alone.
+/// If the sensor is not a camera, the image is rendered for display only.
 #[derive(Debug)]
 pub struct FlightVideo {
     views: Views,
     image: Image,
-    /// How many pixels wide one of the camera's is drawn.
+    /// The width of a camera pixel in the frame, pixels.
     scale: usize,
 }
 
 impl FlightVideo {
-    /// For a flight from its beginning.
+    /// A video of a flight that has not begun.
     ///
     /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter) for a camera so large that the video would be too large.
+    /// [`Error::Parameter`](crate::Error::Parameter) for a camera whose video would be too large.
     pub fn new(flight: &Flight) -> Result<Self> {
         let views = Views::new(flight)?;
         let Size { width, height } = views.picture_size();
@@ -47,16 +48,16 @@ impl FlightVideo {
         Ok(Self { views, image: blank(size), scale })
     }
 
-    /// Width and height of the frames.
+    /// Width and height of the video's frames.
     pub fn size(&self) -> Size {
         self.image.size
     }
 
-    /// A frame, as [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). The way on the map leads through the frames that
-    /// have been drawn.
+    /// Draws a frame as [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8). The path on the map connects the frames
+    /// drawn so far.
     ///
     /// # Errors
-    /// [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a picture or a flow of another camera.
+    /// [`Error::SizeMismatch`](crate::Error::SizeMismatch) for an image or a flow of another camera.
     pub fn draw(&mut self, seen: &FlightFrame<'_>) -> Result<&Image> {
         Canvas::new(&mut self.image, [0, 0], [usize::MAX; 2]).fill(FRAME);
         let Size { width, height } = self.views.picture_size();
@@ -76,7 +77,7 @@ impl FlightVideo {
     }
 }
 
-/// Copies a picture into the upper left corner of another one, each of its pixels as a square.
+/// Copies an image into the upper left corner of another one, each pixel as a square of `scale` pixels.
 fn enlarge(from: &Image, to: &mut Image, scale: usize) {
     let (width, wide) = (from.size.width as usize, to.size.width as usize);
     let from = from.data.as_chunks::<3>().0;
@@ -88,7 +89,7 @@ fn enlarge(from: &Image, to: &mut Image, scale: usize) {
     }
 }
 
-/// The figures of a frame.
+/// The figures of a frame as lines of text.
 fn lines(record: &Record) -> [(String, [u8; 3]); 2] {
     let seconds = |time_s: Option<f64>| time_s.map_or("-".to_owned(), |time_s| format!("{time_s:.1}"));
     let [roll_rad, ..] = record.roll_pitch_yaw_rad;

@@ -1,4 +1,4 @@
-//! What there is to see of a frame, in parts: for a video, and for the player of a page.
+//! The views of a frame, for a video and for a page's player.
 
 use glam::{DMat3, DVec3};
 
@@ -16,23 +16,23 @@ use crate::report::rectified::Rectified;
 use crate::sim::flight::{Flight, FlightFrame, Record};
 use crate::sim::{RayTable, World, reference_render};
 
-/// Half the width of the ribbon along the arc that was chosen, and how far below the vehicle it lies, metres.
+/// Half the width of the ribbon along the chosen arc, and its depth below the vehicle, metres.
 const RIBBON_M: f64 = 0.6;
 const BELOW_M: f64 = 1.0;
 
-/// Draws the camera's picture, the danger in the directions around, and a map.
+/// Draws the camera's image, the map of danger and the map of the surroundings.
 #[derive(Debug)]
 pub(super) struct Views {
     ideal: Camera,
     overlay: Overlay,
     rectified: Rectified,
     scenery: Scenery,
-    /// The picture in the ideal camera's size, where there is no cue to draw over it.
+    /// The gray image in the ideal camera's size, used if there is no cue.
     plain: Image,
     map: Map,
 }
 
-/// What a camera would see.
+/// The camera's view.
 #[derive(Debug)]
 struct Scenery {
     world: World,
@@ -40,7 +40,7 @@ struct Scenery {
 }
 
 impl Views {
-    /// Of a flight from its beginning.
+    /// The views of a flight that has not begun.
     pub(super) fn new(flight: &Flight) -> Result<Self> {
         let (raw, ideal) = (&flight.config().camera, *flight.ideal());
         Ok(Self {
@@ -53,12 +53,12 @@ impl Views {
         })
     }
 
-    /// Width and height of the camera's picture.
+    /// Width and height of the camera's image.
     pub(super) fn picture_size(&self) -> Size {
         self.ideal.size
     }
 
-    /// What the camera sees, with what the pipeline makes of it over it.
+    /// The camera's image with the pipeline's results.
     pub(super) fn picture(&mut self, seen: &FlightFrame<'_>) -> Result<&Image> {
         match (seen.image, seen.cue) {
             (Some(image), Some(cue)) => self.overlay.draw(&image.frame()?, cue),
@@ -66,7 +66,7 @@ impl Views {
         }
     }
 
-    /// The same, with some layers of it alone.
+    /// The camera's image with some layers only.
     #[cfg(feature = "io")]
     pub(super) fn layers(&mut self, seen: &FlightFrame<'_>, layers: Layers) -> Result<&Image> {
         match (seen.image, seen.cue) {
@@ -75,7 +75,7 @@ impl Views {
         }
     }
 
-    /// What the camera sees, where there is no cue to draw over it.
+    /// The camera's image without an overlay, used if there is no cue.
     fn plain(&mut self, seen: &FlightFrame<'_>) -> Result<&Image> {
         match seen.image {
             Some(image) => self.rectified.draw(&image.frame()?, &mut self.plain)?,
@@ -84,8 +84,7 @@ impl Views {
         Ok(&self.plain)
     }
 
-    /// The horizon, and the arc that was chosen as a ribbon below the vehicle, over a picture each of whose pixels is drawn
-    /// `scale` pixels wide.
+    /// Draws the horizon, and the chosen arc as a ribbon below the vehicle, over an image enlarged by `scale`.
     pub(super) fn attitude(&self, canvas: &mut Canvas<'_>, scale: f64, seen: &FlightFrame<'_>) {
         let scaled = |ends: [[f64; 2]; 2]| ends.map(|place| place.map(|c| scale * c));
         if let Some(ends) = self.horizon(seen.record) {
@@ -102,7 +101,7 @@ impl Views {
         }
     }
 
-    /// Both ends of the horizon, in pixels from the picture's corner; none where it is not seen.
+    /// Both ends of the horizon, in pixels from the image's corner; `None` if it is not in view.
     pub(super) fn horizon(&self, record: &Record) -> Option<[[f64; 2]; 2]> {
         let yaw_rad = record.roll_pitch_yaw_rad[2];
         let [left, right] = [-20, 20].map(|i| {
@@ -112,7 +111,7 @@ impl Views {
         Some([left?, right?])
     }
 
-    /// Both sides of the arc that was chosen, from near to far, in pixels from the picture's corner: as much of it as is seen.
+    /// Both sides of the visible part of the chosen arc, from near to far, in pixels from the image's corner.
     pub(super) fn ribbon(&self, seen: &FlightFrame<'_>) -> Vec<[[f64; 2]; 2]> {
         let Some(arc) = seen.steering.arc() else { return Vec::new() };
         let sides = |ends: &[DVec3]| {
@@ -124,18 +123,18 @@ impl Views {
         arc.path_ned_m.windows(2).filter_map(sides).collect()
     }
 
-    /// Where something is seen that is so far to north, east and down, in pixels from the picture's corner.
+    /// The image position of a point relative to the vehicle (north, east, down), in pixels from the image's corner.
     fn place(&self, record: &Record, off_ned: DVec3) -> Option<[f64; 2]> {
         let place = self.ideal.project(world_from_camera(record).transpose() * off_ned)?;
         Some(place.map(|c| c + 0.5))
     }
 
-    /// The danger in the directions around.
+    /// Draws the map of danger.
     pub(super) fn danger(&self, canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
         danger::draw(canvas, seen);
     }
 
-    /// What is around, from above, and the way through the frames whose map has been drawn.
+    /// Draws the map, with the path through the frames whose map has been drawn.
     pub(super) fn map(&mut self, canvas: &mut Canvas<'_>, seen: &FlightFrame<'_>) {
         self.map.draw(canvas, seen);
     }
@@ -162,7 +161,7 @@ fn world_from_camera(record: &Record) -> DMat3 {
     world_from_body(roll, pitch, yaw) * FRD_FROM_CAMERA
 }
 
-/// A black picture to draw on.
+/// A black image.
 pub(super) fn blank(size: Size) -> Image {
     Image { size, format: PixelFormat::Rgb8, data: vec![0; 3 * size.pixels()] }
 }

@@ -1,4 +1,4 @@
-//! The way flown, from above.
+//! The path flown, from above.
 
 use glam::DVec2;
 
@@ -8,17 +8,17 @@ use crate::report::plot::{PlotArea, WIDE};
 use crate::sim::Course;
 use crate::sim::flight::{Outcome, Record};
 
-/// Clearances in metres, each with the class of what has less. The last holds the rest.
+/// Clearances in metres, each with the CSS class of smaller ones. The last one covers the rest.
 pub(super) const CLEARANCES: [(f64, &str); 5] =
     [(1.0, "s0"), (2.0, "s1"), (4.0, "s2"), (8.0, "s3"), (f64::INFINITY, "s4")];
-/// What is shown before the start, behind the end, and to the sides of the way, metres.
+/// The margins before the start, behind the end, and to the sides of the path, metres.
 const BEFORE_M: f64 = 8.0;
 const BEHIND_M: f64 = 15.0;
 const ASIDE_M: f64 = 22.0;
-/// Highest drawing, pixels.
+/// The largest height of the drawing, pixels.
 const HIGHEST: f64 = 620.0;
 
-/// A drawing of a course with the way through it; the direction of the goal is to the right.
+/// A drawing of the course with the path flown. The direction of the goal is to the right.
 pub(super) fn svg(course: &Course, records: &[Record], outcome: Outcome) -> String {
     let (sin, cos) = course.goal_yaw_rad.sin_cos();
     let (ahead, left) = (DVec2::new(cos, sin), DVec2::new(sin, -cos));
@@ -33,13 +33,13 @@ pub(super) fn svg(course: &Course, records: &[Record], outcome: Outcome) -> Stri
     let x = [first.min(0.0) - BEFORE_M, last.max(course.length_m) + BEHIND_M];
     let scale = (WIDE - PlotArea::BESIDE) / (x[1] - x[0]);
     let most = (HIGHEST - PlotArea::ABOVE_AND_BELOW) / scale;
-    // A way to the side that is higher than the drawing may be is cut around its middle.
+    // A path that leads too far aside is cut around the middle of its range.
     let middle = 0.5 * (lowest + highest);
     let half = (0.5 * (highest - lowest) + ASIDE_M).min(0.5 * most);
     let y = [middle - half, middle + half];
     let frame = PlotArea { x, y, size: [WIDE, 2.0 * half * scale + PlotArea::ABOVE_AND_BELOW] };
 
-    let mut svg = frame.begin("The way from above");
+    let mut svg = frame.begin("The path from above");
     let [[l, b], [r, t]] = [frame.at([x[0], y[0]]), frame.at([x[1], y[1]])];
     svg += &format!(
         "<clipPath id=\"inside\"><rect x=\"{l:.1}\" y=\"{t:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>\n",
@@ -104,7 +104,7 @@ fn line(frame: &PlotArea, points: &[[f64; 2]], class: &str) -> String {
     format!("<polyline class=\"{class}\" fill=\"none\" points=\"{}\"/>\n", points.trim_end())
 }
 
-/// The way in parts of one class each; each part begins where the one before ends.
+/// The path in parts of one class each. Each part begins where the previous one ends.
 fn coloured<'a>(way: &'a [[f64; 2]], records: &[Record]) -> Vec<(&'a [[f64; 2]], &'static str)> {
     let class = |record: &Record| {
         let found = CLEARANCES.iter().find(|(limit, _)| record.clearance_m < *limit);
@@ -121,7 +121,7 @@ fn coloured<'a>(way: &'a [[f64; 2]], records: &[Record]) -> Vec<(&'a [[f64; 2]],
     parts
 }
 
-/// Which colour is which clearance.
+/// The legend of the colours of clearances.
 fn legend() -> String {
     let mut svg = String::new();
     let mut low = 0.0;

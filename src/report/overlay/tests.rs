@@ -78,7 +78,7 @@ fn layers_show_the_flow_or_the_sectors() {
         let image = image.data.as_chunks::<3>().0.to_vec();
         [at(&image, 20, 20), at(&image, 120, 120)]
     };
-    // To the right is red, and so is what is met within a second: the sector at the upper left.
+    // Motion to the right is red, and so is a contact within a second: the sector at the upper left.
     let [[r, g, _], elsewhere] = shown(Layers::Flow);
     assert!(r > 150 && g < 80 && elsewhere == [r, g, elsewhere[2]], "{r} {g} {elsewhere:?}");
     let [[r, g, b], elsewhere] = shown(Layers::Sectors);

@@ -1,17 +1,16 @@
-//! A short name for a configuration in all its parts.
+//! The fingerprint of a configuration.
 
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 
-/// A short name for a configuration in all its parts, and for this crate's version: 16 hexadecimal digits that are the same
-/// only where both are.
+/// A fingerprint of a configuration and of this crate's version: 16 hexadecimal digits that differ if either differs.
 ///
-/// It is FNV-1a over the version and the configuration as canonical JSON: members in the order of their names, numbers as the
-/// shortest decimals that are read back the same. JSON has no infinity; a parameter that may be infinite counts as `null`.
+/// It is the FNV-1a hash of the version and the configuration as canonical JSON: members sorted by name, numbers as the
+/// shortest decimals that are read back the same. JSON has no infinity; an infinite parameter becomes `null`.
 ///
 /// # Errors
-/// [`Error::Parameter`] for what JSON cannot hold, such as a map whose keys are no text.
+/// [`Error::Parameter`] for a value that JSON cannot represent, such as a map whose keys are not text.
 pub fn fingerprint(configuration: &impl Serialize) -> Result<String> {
     let text = format!("{} {}", env!("CARGO_PKG_VERSION"), canonical(configuration)?);
     Ok(format!("{:016x}", fnv_1a(text.as_bytes())))
@@ -19,13 +18,13 @@ pub fn fingerprint(configuration: &impl Serialize) -> Result<String> {
 
 fn canonical(configuration: &impl Serialize) -> Result<String> {
     let mut value = serde_json::to_value(configuration)
-        .map_err(|error| Error::parameter("configuration", error, "a value that JSON can hold"))?;
-    // They are sorted already unless some crate switches serde_json's `preserve_order` on.
+        .map_err(|error| Error::parameter("configuration", error, "a value that JSON can represent"))?;
+    // Objects are sorted already, unless another crate enables serde_json's `preserve_order`.
     value.sort_all_objects();
     Ok(value.to_string())
 }
 
-/// The hash of G. Fowler, L. C. Noll and K.-P. Vo, variant 1a, in 64 bits.
+/// The 64-bit FNV-1a hash of G. Fowler, L. C. Noll and K.-P. Vo.
 fn fnv_1a(bytes: &[u8]) -> u64 {
     bytes
         .iter()
@@ -46,7 +45,7 @@ mod tests {
     use crate::sim::flight::{Body, FlightConfig};
     use crate::sim::vehicle::{Gusts, TurnParams, VaneErrors};
 
-    /// A configuration in which nothing is left out.
+    /// A configuration with every optional part.
     fn full() -> FlightConfig {
         let mut config = FlightConfig::default();
         config.pipeline.stream.deadline = Some(Duration::from_millis(7));
@@ -58,7 +57,7 @@ mod tests {
         config
     }
 
-    /// The places of all values that are no list and no object.
+    /// The paths of all values that are neither arrays nor objects.
     fn leaves(value: &Value, path: &str, found: &mut Vec<String>) {
         match value {
             Value::Object(members) => {
@@ -73,7 +72,7 @@ mod tests {
         }
     }
 
-    /// The names of all members, also of those that are in others.
+    /// The names of all members, nested ones included.
     fn names(value: &Value, found: &mut Vec<String>) {
         match value {
             Value::Object(members) => members.iter().for_each(|(name, value)| {
@@ -87,7 +86,7 @@ mod tests {
 
     #[test]
     fn the_hash_is_fnv_1a() {
-        // The values of Fowler, Noll and Vo for these strings.
+        // The published hashes of these strings.
         for (text, expected) in [("a", 0xaf63_dc4c_8601_ec8c), ("foobar", 0x8594_4171_f739_67e8)] {
             assert_eq!(fnv_1a(text.as_bytes()), expected, "{text}");
         }
@@ -100,20 +99,20 @@ mod tests {
         assert_eq!(canonical(&unordered).unwrap(), expected);
     }
 
-    /// `Debug` as the compiler derives it knows every field, whatever serde was told to leave out.
+    /// The derived `Debug` shows every field, even one that serde skips.
     #[test]
     fn every_field_is_in_it() {
         for body in [Body::default(), Body::Turn(TurnParams::default())] {
             let config = FlightConfig { body, ..full() };
             let mut written = Vec::new();
             names(&serde_json::to_value(&config).unwrap(), &mut written);
-            // Names of variants are capital; the parts of a duration have no name in `Debug`.
+            // Variants are capitalised. The parts of a duration have no name in `Debug`.
             written
                 .retain(|name| name.starts_with(char::is_lowercase) && !["secs", "nanos"].contains(&&**name));
             let shown = format!("{config:#?}");
             let field = |line: &str| line.trim().split_once(':').map(|(name, _)| name.to_owned());
             let mut fields: Vec<String> = shown.lines().filter_map(field).collect();
-            // The columns of a matrix are numbers in a list.
+            // `Debug` names the columns of a matrix, which serde writes as an array.
             fields.retain(|name| !["x_axis", "y_axis", "z_axis"].contains(&&**name));
             written.sort();
             fields.sort();
@@ -139,7 +138,7 @@ mod tests {
                 Value::Null => json!(0),
                 Value::Bool(on) => json!(!on),
                 Value::String(text) => json!(format!("{text}x")),
-                // Nor is a change of a number's last bit lost.
+                // Even the last bit of a number counts.
                 Value::Number(number) => match number.as_u64() {
                     Some(whole) => json!(whole ^ 1),
                     None => json!(number.as_f64().unwrap().next_up()),

@@ -39,7 +39,7 @@ impl Journal {
         }
         let file = OpenOptions::new().create(true).read(true).append(true).open(path).map_err(wrong)?;
         file.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => wrong(io::Error::other("another process adds results to it")),
+            TryLockError::WouldBlock => wrong(io::Error::other("another process is appending to it")),
             TryLockError::Error(source) => wrong(source),
         })?;
         let mut journal = Self { file, path: path.to_owned() };

@@ -32,7 +32,7 @@ pub struct Results {
 }
 
 impl Configuration {
-    /// That of flights which begin with `base`. `settings` says what of it was chosen.
+    /// The configuration of flights with the base configuration `base`. `settings` describes the chosen settings.
     ///
     /// # Errors
     /// As [`fingerprint`].
@@ -121,8 +121,8 @@ impl Results {
         Ok(())
     }
 
-    /// Checks that the flow of all flights by images was computed on this adapter, as others round differently: so a
-    /// row of the table is of one adapter.
+    /// Checks that the flow of all flights by images was computed on this adapter, since adapters round differently and
+    /// a row of the table must be of one adapter.
     ///
     /// # Errors
     /// [`Error::Format`] naming the file and both adapters.

@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn every_job_is_flown_once_however_many_at_a_time() {
         let campaign = campaign(Sensor::Depth);
-        let never = || panic!("nothing is to be computed on where there are no pictures");
+        let never = || panic!("flights without images need no backend");
         let one = flown(&campaign, 1, &never);
         assert_eq!(one.iter().map(|result| result.job.clone()).collect::<Vec<_>>(), campaign.jobs());
         assert!(one.iter().all(|result| matches!(result.ended, Ended::Flown(_)) && result.adapter.is_none()));

@@ -28,8 +28,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_wilsons() {
-        // R. G. Newcombe, Two-sided confidence intervals for the single proportion, Statistics in Medicine 17, 1998, table I,
-        // method 3; it gives four digits.
+        // R. G. Newcombe, Two-sided confidence intervals for the single proportion, Statistics in Medicine 17, 1998,
+        // table I, method 3; it gives four digits.
         for (successes, trials, low, high) in [
             (81, 263, 0.2553, 0.3662),
             (15, 148, 0.0624, 0.1605),

@@ -26,7 +26,7 @@ impl Course {
             return Err(Error::parameter("world", found, format_args!("at most {MAX_SURFACES}")));
         }
         if self.world.up_world != DVec3::NEG_Z {
-            return Err(Error::parameter("up_world", self.world.up_world, "against z"));
+            return Err(Error::parameter("up_world", self.world.up_world, "the direction of -z"));
         }
         if let Some(i) = self.world.surfaces.iter().position(|surface| !is_near(surface.form())) {
             let expected = format_args!("within ±{LARGEST_M} m");
@@ -46,13 +46,13 @@ impl Course {
         }
         let [low, high] = self.altitude_m;
         if !(low >= 0.0 && low < high && high <= LARGEST_M) {
-            let expected = format_args!("a band from 0 or more to something higher, up to {LARGEST_M}");
+            let expected = format_args!("a band with the lower end first, within 0 to {LARGEST_M}");
             return Err(Error::parameter("altitude_m", format_args!("{low} to {high}"), expected));
         }
         let near = |point: &DVec2| point.abs().cmple(DVec2::splat(LARGEST_M)).all();
         if !self.centre_line_m.iter().all(near) || self.centre_line_m.len() == 1 {
             let found = format_args!("{} points", self.centre_line_m.len());
-            let expected = format_args!("none, or two and more within ±{LARGEST_M} m");
+            let expected = format_args!("none, or at least two within ±{LARGEST_M} m");
             return Err(Error::parameter("centre_line_m", found, expected));
         }
         let clearance_m = self.world.clearance_m(self.start_ned_m);

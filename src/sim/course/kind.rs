@@ -128,7 +128,7 @@ impl FromStr for CourseKind {
             let (key, value) = part.split_once('=').unwrap_or(("", part));
             let key = key.trim();
             if given.contains(&key) {
-                let found = format_args!("{name} with {part:?} after another one");
+                let found = format_args!("{name} with {part:?} repeated");
                 return Err(Error::parameter("world", found, "each parameter once"));
             }
             match fields.iter_mut().find(|field| field.name == key) {
@@ -201,7 +201,7 @@ mod tests {
             ),
             (
                 "forest:radius=1:density=1/64: radius = 2",
-                "world is forest with \"radius = 2\" after another one, expected each parameter once",
+                "world is forest with \"radius = 2\" repeated, expected each parameter once",
             ),
             ("forest:density=", "density is \"\", expected 0.0001 to 0.04 per m²"),
             ("forest:density=1", "density is \"1\", expected 0.0001 to 0.04 per m²"),
@@ -245,7 +245,7 @@ mod tests {
             let count = fields.len();
             for (field, value, more) in changes {
                 let value = if value > 0.0 { more / 7.0 } else { value };
-                // A value out of its range changes nothing.
+                // A value out of range changes nothing.
                 let field = &mut fields[field % count];
                 let _ = field.read(&format!("{value}..{}", value + more)).or_else(|_| field.read(&value.to_string()));
             }

@@ -62,7 +62,7 @@ pub struct Course {
     pub name: String,
     /// The seed of its generator.
     pub seed: u64,
-    /// The surfaces. Up is against z.
+    /// The surfaces. Up is −z.
     pub world: World,
     /// The position at which the flight starts.
     pub start_ned_m: DVec3,

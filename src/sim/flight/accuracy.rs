@@ -1,42 +1,41 @@
-//! How far a measured flow is from the true one.
+//! The error of the measured flow against the true flow.
 
 use crate::frame::Plane;
 use crate::quantile::median;
 
-/// How far a frame's measured flow is from the true one; or a flight's, as medians over its frames.
+/// The error of a frame's measured flow against the true flow. For a flight, the medians over its frames.
 ///
-/// A cell's truth is the mean over the samples that its measured flow is the mean of, each from what its ray meets and the
-/// exact poses of the two frames; what the gyro gets wrong of the turn between them is part of the error. The sky stands
-/// still, infinitely far away.
+/// The true flow of a cell is the mean over the same samples as the measured one. Each sample's flow follows from the
+/// point that its ray meets and from the exact poses of the two frames. So the error includes that of the gyro's
+/// rotation between them. The sky is at rest and infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Median length by which the flow on the view sphere from one frame to the next, the camera's turn taken out, is off in
-    /// the half of the trusted cells that is trusted more than the other: in pixels of the ideal picture's middle. None where
-    /// there are no such cells.
+    /// The median length of the error of the derotated flow on the view sphere, frame to frame, over the more confident
+    /// half of the trusted cells. In pixels at the centre of the ideal image. `None` if no cell is trusted.
     pub better_half_error_px: Option<f64>,
-    /// The same in all trusted cells.
+    /// The same over all trusted cells.
     pub trusted_error_px: Option<f64>,
-    /// The share of cells that are trusted, by [`Sphere::least_confidence`](crate::sphere::Sphere::least_confidence) or
-    /// more: 0 to 1.
+    /// The share of trusted cells, 0 to 1: those whose confidence is at least
+    /// [`Sphere::least_confidence`](crate::sphere::Sphere::least_confidence).
     pub trusted: f64,
-    /// Median relative error of the time to contact, in trusted cells whose true one is between 0.7 and 4 s; a cell that
-    /// shows nothing coming nearer is infinitely wrong. None where there are no such cells.
+    /// The median relative error of the time to contact, over the trusted cells whose true time is 0.7 to 4 s. The
+    /// error of a cell that measures no approach is infinite. `None` if there are no such cells.
     pub contact_error: Option<f64>,
-    /// How many of these there are; of a flight, in all its frames together.
+    /// The number of these cells; for a flight, summed over all frames.
     pub contact_cells: usize,
 }
 
-/// The divergence of the flow on the view sphere in each cell, 1/s.
+/// The divergence of the flow on the view sphere, per cell, 1/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergences {
-    /// As measured; NaN in cells around which too little is trusted.
+    /// The measured divergence; NaN where too little of the neighbourhood is trusted.
     pub measured_hz: Plane,
-    /// In truth: the mean over a cell.
+    /// The true divergence: the mean over the cell.
     pub true_hz: Plane,
 }
 
 impl Measured {
-    /// Medians over frames; none of no frames.
+    /// The medians over the frames; `None` if there are no frames.
     pub(super) fn over(frames: &[Self]) -> Option<Self> {
         let of = |part: fn(&Self) -> Option<f64>| median(frames.iter().filter_map(part));
         Some(Self {

@@ -1,4 +1,4 @@
-//! What flies.
+//! The vehicle of a flight.
 
 use super::clock::FRAME_S;
 use crate::camera::FRD_FROM_CAMERA;
@@ -8,19 +8,19 @@ use crate::sim::vehicle::{
 };
 use crate::steer::{Aircraft, Response};
 
-/// What flies.
+/// The vehicle of a flight, with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Body {
-    /// A point in coordinated turns. How it follows commands is known exactly.
+    /// A point in coordinated turns. Its response to commands is known exactly.
     Turn(TurnParams),
-    /// A rigid body with an inner loop.
+    /// A rigid body with an inner control loop.
     Airframe {
-        /// The airframe.
+        /// The airframe's parameters.
         params: Box<AirframeParams>,
-        /// Its inner loop.
+        /// The inner loop's gains.
         autopilot: Autopilot,
-        /// How steering takes it to follow commands.
+        /// The response to commands that steering assumes.
         response: Response,
     },
 }
@@ -36,7 +36,7 @@ impl Default for Body {
 }
 
 impl Body {
-    /// Checks every parameter, and that it can fly level at a speed.
+    /// Checks every parameter, and that the body can fly level at the speed.
     pub(super) fn validate(&self, speed_m_s: f64) -> Result<()> {
         match self {
             Self::Turn(params) => {
@@ -54,7 +54,7 @@ impl Body {
         Ok(())
     }
 
-    /// The vehicle at its start.
+    /// The vehicle in its initial state.
     pub(super) fn vehicle(&self, start: &Start, wind: Wind) -> Result<Box<dyn Vehicle>> {
         Ok(match self {
             Self::Turn(params) => Box::new(CoordinatedTurn::new(params, start, wind)?),
@@ -64,7 +64,8 @@ impl Body {
         })
     }
 
-    /// What steering knows of it: a camera along the body's x axis, and commands that act so many frames after an exposure.
+    /// The aircraft as steering sees it: a camera along the body's x axis, and commands that take effect
+    /// `latency_frames` after an exposure.
     pub(super) fn aircraft(&self, latency_frames: u32) -> Aircraft {
         let response = match self {
             Self::Turn(turn) => Response {

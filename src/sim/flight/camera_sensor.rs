@@ -1,4 +1,4 @@
-//! What a camera and a pipeline say.
+//! The sensor that renders images and processes them with a pipeline.
 
 use std::time::Instant;
 
@@ -17,14 +17,14 @@ use crate::sim::Renderer;
 use crate::sim::{Random, World};
 use crate::steer::View;
 
-/// Draws pictures and has a pipeline look at them.
+/// Renders images and processes them with a pipeline.
 pub(super) struct CameraSensor {
     renderer: Renderer,
     pipeline: Pipeline,
     image: Image,
     random: Random,
     seed: u64,
-    /// How often the device was lost so far.
+    /// How many times the device has been destroyed.
     losses: usize,
     measure: Option<Measure>,
 }
@@ -55,12 +55,12 @@ impl CameraSensor {
         self.pipeline.push_gyro(sample);
     }
 
-    /// The pinhole whose pictures the flow is computed of.
+    /// The ideal pinhole camera, in whose images the flow is computed.
     pub(super) fn ideal(&self) -> &Camera {
         self.pipeline.ideal()
     }
 
-    /// Looks at the world. The picture is there even if the pipeline says nothing of it.
+    /// Renders and processes a frame. The perception has the image even if the pipeline's cue is invalid.
     pub(super) fn sense(
         &mut self,
         at: &SensorInput<'_>,
@@ -101,9 +101,9 @@ impl CameraSensor {
         let begun = Instant::now();
         let cue = match self.pipeline.process(&self.image.frame()?, time_s) {
             Ok(cue) => Ok(cue),
-            // What the driver says of it differs from run to run.
+            // The driver's own message differs from run to run.
             Err(Error::DeviceLost { .. }) => Err("the device was lost"),
-            Err(Error::Timeout { .. }) => Err("the frame was not done in time"),
+            Err(Error::Timeout { .. }) => Err("the frame was not finished in time"),
             Err(error) => return Err(error),
         };
         cost.pipeline = begun.elapsed();
@@ -129,7 +129,7 @@ impl CameraSensor {
         })
     }
 
-    /// Remembers from where the picture was taken, where that is asked for.
+    /// Records the pose at which the shown image was rendered, if the flow is measured.
     fn show(&mut self, pose: Option<Pose>) {
         if let Some(measure) = &mut self.measure {
             measure.show(pose);

@@ -1,4 +1,4 @@
-//! The true flow, nearness and divergence of the cells of a view.
+//! The true flow, nearness and divergence of cells.
 
 use glam::DMat3;
 
@@ -9,11 +9,12 @@ use crate::frame::Size;
 use crate::sim::{RayTable, Seen, Twist};
 use crate::sphere::{Sphere, model};
 
-/// The rays that a view's cells are sampled by.
+/// The rays at which a view's cells are sampled.
 pub(super) struct CellRays {
-    /// Of the samples, or of all pixels where the samples of two cells are not evenly apart.
+    /// One ray per sample, or one per pixel if the cell is not a multiple of the step: the samples are then not evenly
+    /// spaced.
     rays: RayTable,
-    /// Pixels from one ray to the next.
+    /// The spacing of the rays, in pixels.
     apart: usize,
     cell: usize,
     step: usize,
@@ -23,7 +24,7 @@ pub(super) struct CellRays {
 #[derive(Default)]
 pub(super) struct CellTruth {
     count: f64,
-    /// In the plane at unit distance, as the measured one.
+    /// In the plane at unit distance, as the measured flow.
     pub(super) flow: [f64; 2],
     pub(super) nearness_per_m: f64,
     pub(super) divergence_hz: f64,
@@ -49,12 +50,12 @@ impl CellRays {
         })
     }
 
-    /// One for each sample, row by row.
+    /// The rays, row by row.
     pub(super) fn table(&self) -> &RayTable {
         &self.rays
     }
 
-    /// The means over a cell's samples, of which `seen` is what each ray meets, from one exact pose to the next.
+    /// The means over a cell's samples between two exact poses. `seen` is what each ray of the table meets.
     pub(super) fn truth(
         &self,
         cell: [usize; 2],

@@ -1,22 +1,22 @@
-//! What a frame costs.
+//! The computing time of a frame.
 
 use std::time::Duration;
 
-/// Time that the parts of a frame take. It differs from run to run.
+/// The computing time of a frame, by part. It differs from run to run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Drawing the picture, or finding the true flow.
+    /// Rendering the image, or computing the true flow.
     pub sensor: Duration,
-    /// From the picture to the sectors.
+    /// From the image to the sectors.
     pub pipeline: Duration,
-    /// From the sectors to a command.
+    /// From the sectors to the command.
     pub steer: Duration,
-    /// The vehicle's motion, and how near it is to everything.
+    /// Advancing the vehicle, and its clearance.
     pub vehicle: Duration,
 }
 
 impl Cost {
-    /// All together.
+    /// The total.
     pub fn total(&self) -> Duration {
         self.sensor + self.pipeline + self.steer + self.vehicle
     }

@@ -1,4 +1,4 @@
-//! What can go wrong in flight.
+//! Faults of the camera, the gyro and the device during a flight.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,45 +7,45 @@ use super::sensor::Sensor;
 use crate::error::{Error, Result};
 use crate::sim::vehicle::MAX_BIAS_RAD_S;
 
-/// What goes wrong.
+/// The kind of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum FaultKind {
-    /// The camera gives the last picture again and again.
+    /// The camera repeats its last image.
     Frozen,
-    /// The pictures are black.
+    /// The images are black.
     Black,
-    /// This share of the pictures does not arrive, 0 to 1. As text 0.2 where none is given.
+    /// The given share of the frames is dropped, 0 to 1. As text 0.2 by default.
     Dropped(f64),
-    /// The gyro is silent.
+    /// The gyro sends no samples.
     GyroLost,
-    /// The gyro says so much too much about each of its axes, rad/s, within ±[`MAX_BIAS_RAD_S`]. As text 5 °/s where none is
-    /// given.
+    /// The gyro has this bias about each axis, rad/s, within ±[`MAX_BIAS_RAD_S`]. As text in degrees per second, 5 by
+    /// default.
     GyroBias(f64),
-    /// The frames' times are not numbers.
+    /// The frames' times are NaN.
     NotANumber,
-    /// The device that computes the flow is destroyed. It has no end, as the engine opens the device again; a second time it
-    /// does not (see [`OnLoss`](crate::OnLoss)).
+    /// The device that computes the flow is destroyed. The fault has no end: the engine reopens the device the first
+    /// time, but not a second time (see [`OnLoss`](crate::OnLoss)).
     DeviceLost,
 }
 
-/// Something that goes wrong for a while.
+/// A fault with its interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fault {
-    /// What goes wrong.
+    /// The kind.
     pub kind: FaultKind,
-    /// From when on, in seconds of flight.
+    /// The beginning, in seconds of flight.
     pub from_s: f64,
-    /// Until when.
+    /// The end, exclusive, in seconds of flight; infinite for the rest of the flight.
     pub until_s: f64,
 }
 
 impl Fault {
-    /// Checks the times, and the share or the bias; what happens once has no end.
+    /// Checks the times, and the share or the bias. The loss of the device has no end.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for what is out of range.
+    /// [`Error::Parameter`] for a value out of range.
     pub fn validate(&self) -> Result<()> {
         if !(self.from_s >= 0.0 && self.until_s > self.from_s) {
             let found = format_args!("{} to {} s", self.from_s, self.until_s);
@@ -62,16 +62,16 @@ impl Fault {
             }
             FaultKind::GyroBias(bias_rad_s) if !(bias_rad_s.abs() <= MAX_BIAS_RAD_S) => {
                 let expected = format!("within ±{:.0} °/s", MAX_BIAS_RAD_S.to_degrees());
-                // To what was given: degrees made radians and degrees again are off in their last digits.
+                // Rounded to what was given: converting degrees to radians and back changes the last digits.
                 let found = format_args!("{} °/s", (1e6 * bias_rad_s.to_degrees()).round() / 1e6);
-                Err(Error::parameter("bias of the gyro", found, expected))
+                Err(Error::parameter("gyro bias", found, expected))
             }
             _ => Ok(()),
         }
     }
 
-    /// Checks that a flight by this sensor is another one with it: faults of pictures need pictures, and what is seen of
-    /// the true depth does not depend on how the gyro turns, only on whether it is there.
+    /// Checks that the fault has an effect on a flight by this sensor. Camera faults need images. The true depth
+    /// depends on whether there are gyro samples, but not on their values.
     ///
     /// # Errors
     /// [`Error::Parameter`] naming the fault and the sensor.
@@ -79,28 +79,28 @@ impl Fault {
         let expected = match self.kind {
             FaultKind::GyroLost => return Ok(()),
             FaultKind::GyroBias(_) if sensor != Sensor::Depth => return Ok(()),
-            FaultKind::GyroBias(_) => "the sensor flow, noisy-flow or images, which a bias acts on",
+            FaultKind::GyroBias(_) => "the sensor flow, noisy-flow or images, which a bias affects",
             _ if sensor == Sensor::Images => return Ok(()),
-            _ => "a fault of the gyro, or the sensor images",
+            _ => "a gyro fault, or the sensor images",
         };
         Err(Error::parameter("fault", format_args!("{self} with the sensor {sensor}"), expected))
     }
 
-    /// Whether it is there at a time.
+    /// Whether the fault is active at a time.
     pub fn acts(&self, time_s: f64) -> bool {
         (self.from_s..self.until_s).contains(&time_s)
     }
 }
 
-/// What a fault is written like.
+/// The syntax of a fault, for error messages.
 const SYNTAX: &str = "KIND or KIND:FROM or KIND:FROM..UNTIL in seconds, KIND one of frozen, black, dropped[=SHARE], \
                       gyro-lost, gyro-bias[=DEG_S], nan, device-lost";
 
 impl FromStr for Fault {
     type Err = Error;
 
-    /// Reads `KIND`, `KIND:FROM` or `KIND:FROM..UNTIL`, such as `black:2..3` or `dropped=0.2`. `dropped` alone is a fifth of the
-    /// pictures, `gyro-bias` alone 5 °/s.
+    /// Parses `KIND`, `KIND:FROM` or `KIND:FROM..UNTIL`, such as `black:2..3` or `dropped=0.2`. `dropped` alone is a
+    /// share of 0.2, `gyro-bias` alone 5 °/s.
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || Error::parameter("fault", text, SYNTAX);
         let (kind, times) = text.split_once(':').unwrap_or((text, "0"));
@@ -195,6 +195,6 @@ mod tests {
             assert!(!error.contains('\n'), "{error}");
         }
         let error = "gyro-bias=1e9".parse::<Fault>().unwrap_err().to_string();
-        assert_eq!(error, "bias of the gyro is 1000000000 °/s, expected within ±2005 °/s");
+        assert_eq!(error, "gyro bias is 1000000000 °/s, expected within ±2005 °/s");
     }
 }

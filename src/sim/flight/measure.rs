@@ -1,4 +1,4 @@
-//! What a pipeline measures, held against the true flow of the same cells.
+//! Compares a pipeline's cues with the true flow of the same cells.
 
 use super::accuracy::{Divergences, Measured};
 use super::cell_truth::CellRays;
@@ -11,18 +11,18 @@ use crate::quantile::median;
 use crate::sim::{Twist, query_rays};
 use crate::sphere::{Sphere, model};
 
-/// True times to contact at which the measured ones are judged, seconds: steering acts on these.
+/// The true times to contact for which the measured ones are compared, seconds: those on which steering acts.
 const JUDGED_S: [f64; 2] = [0.7, 4.0];
 
-/// Holds cues against the truth.
+/// Compares cues with the truth.
 pub(super) struct Measure {
     rays: CellRays,
     least_confidence: f64,
     focal_px: f64,
     divergences: Divergences,
-    /// From where the picture that is shown was taken; none if it was not taken at all.
+    /// The pose at which the shown image was rendered; `None` for an image that was not rendered.
     shown: Option<Pose>,
-    /// The same of the frame before.
+    /// The previous frame's pose.
     before: Option<Pose>,
 }
 
@@ -39,17 +39,17 @@ impl Measure {
         })
     }
 
-    /// Says from where the picture was taken that the pipeline is shown next, if it was.
+    /// Records the pose at which the next image was rendered, if it was.
     pub(super) fn show(&mut self, pose: Option<Pose>) {
         self.shown = pose;
     }
 
-    /// The divergences of the cue that was compared last.
+    /// The divergences of the last cue compared.
     pub(super) fn divergences(&self) -> &Divergences {
         &self.divergences
     }
 
-    /// Compares what the pipeline says of the picture that it was shown. None if it says nothing.
+    /// Compares the cue of the image shown last; `None` if the cue is invalid, or if either frame has no pose.
     pub(super) fn compare(&mut self, cue: &Cue<'_>, at: &SensorInput<'_>) -> Option<Measured> {
         let before = std::mem::replace(&mut self.before, self.shown)?;
         let (Some(looming), Some(cells), Some(interval_s), None) =
@@ -71,7 +71,7 @@ impl Measure {
                 f64::from(field[(channels * cell[1] + channel) * stride + cell[0]])
             };
             let truth = self.rays.truth(cell, &seen, [&before, &pose], &prev_from_cur, &motion);
-            // As the sectors take them.
+            // The same condition as the sectors use.
             let is_known = value(looming, 4, 3) >= 0.5 * self.least_confidence;
             let divergence_hz = if is_known { value(looming, 4, 1) / interval_s } else { f64::NAN };
             self.divergences.measured_hz.data[i] = divergence_hz as f32;
@@ -86,7 +86,7 @@ impl Measure {
             let true_s = (truth.nearness_per_m * velocity_m_s.length()).recip();
             if is_known && (JUDGED_S[0]..=JUDGED_S[1]).contains(&true_s) {
                 let rate_hz = value(looming, 4, 0) / interval_s;
-                // The rate is that half-way between the frames.
+                // The rate is that of the moment half-way between the frames.
                 let contact_s =
                     if rate_hz > 0.0 { (rate_hz.recip() - 0.5 * interval_s).max(0.0) } else { f64::INFINITY };
                 contacts.push((contact_s / true_s - 1.0).abs());
@@ -130,8 +130,8 @@ mod tests {
         }
     }
 
-    /// The pixels' true displacement, a field of pictures, made into cells by the pipeline's own kernel, is no different from
-    /// the flow of bearings.
+    /// The true displacement in pixels, aggregated into cells by the pipeline's own kernel, equals the true flow of the
+    /// bearings.
     #[test]
     fn true_pixels_are_measured_as_true() {
         let world = "city".parse::<CourseKind>().unwrap().course(3).unwrap().world;
@@ -165,7 +165,7 @@ mod tests {
             &mut [&mut cells],
         );
         let mut measure = Measure::new(&ideal, Size::new(columns, rows), &view()).unwrap();
-        // Of which nothing is known.
+        // Nothing is known of the looming.
         let looming = vec![0.0; 4 * 24 * 18];
         let sectors = Sectors::unknown(Grid::over(&ideal, view().sectors).unwrap());
         let cue = Cue {
@@ -202,7 +202,7 @@ mod tests {
         let Divergences { measured_hz, true_hz } = measure.divergences();
         assert!(measured_hz.data.iter().all(|value| value.is_nan()));
         assert!(true_hz.data.iter().all(|value| value.is_finite()));
-        // A pose that is wrong by a tenth of the way shows.
+        // A pose that is wrong by a tenth of the distance moved is noticed.
         measure.show(Some(earlier));
         measure.compare(&cue, &input(before));
         measure.show(Some(pose));

@@ -1,8 +1,9 @@
-//! The closed loop: what is seen becomes a command, the command moves the vehicle, and the vehicle sees something else.
+//! The closed loop: what the sensor sees becomes a command, the command moves the vehicle, and the sensor sees
+//! something else.
 //!
-//! A [`Flight`] takes a [`Course`](crate::sim::Course), a vehicle, a sensor and a steering, and goes on frame by frame until the goal is reached
-//! or something else ends it. The same course and configuration give the same records, bit for bit, on the same machine
-//! and adapter.
+//! A [`Flight`] takes a [`Course`](crate::sim::Course) and a [`FlightConfig`] with the vehicle, the sensor and the
+//! steering. It advances frame by frame until the goal is reached or something else ends it. The same course and
+//! configuration give the same records, bit for bit, on the same machine and adapter.
 
 mod accuracy;
 mod body;

@@ -1,4 +1,4 @@
-//! What a sensor is given at a frame, and what it says.
+//! A sensor's input and output at a frame.
 
 use glam::DVec3;
 
@@ -10,18 +10,18 @@ use crate::sim::World;
 use crate::sphere::Heading;
 use crate::steer::View;
 
-/// What a sensor is given at a frame.
+/// A sensor's input at a frame.
 pub(super) struct SensorInput<'a> {
     pub(super) world: &'a World,
     pub(super) pose: Pose,
     pub(super) velocity_world_m_s: DVec3,
-    /// Which way the camera moves, in its own frame, where vanes tell.
+    /// The camera's direction of motion in its own frame, if vanes measure it.
     pub(super) heading: Option<Heading>,
     pub(super) frame: u64,
     pub(super) time_s: f64,
 }
 
-/// What a sensor says of a frame.
+/// A sensor's output at a frame.
 #[derive(Default)]
 pub(super) struct Perception<'a> {
     pub(super) image: Option<&'a Image>,
@@ -29,7 +29,7 @@ pub(super) struct Perception<'a> {
     pub(super) view: Option<View<'a>>,
     /// Why there is no view.
     pub(super) invalid: Option<String>,
-    /// How far it is from the truth, where that is asked for.
+    /// The error against the truth, if it is measured.
     pub(super) measured: Option<Measured>,
     pub(super) divergences: Option<&'a Divergences>,
 }

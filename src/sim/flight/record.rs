@@ -1,4 +1,4 @@
-//! What is kept of a flight.
+//! The record of a frame.
 
 use glam::DVec3;
 
@@ -11,56 +11,56 @@ use crate::sim::vehicle::VehicleState;
 use crate::sphere::{Heading, Sectors};
 use crate::steer::{Command, Decision, Source, View};
 
-/// How far off the direction of motion sectors may lie that say what is met there, radians.
+/// The angle from the direction of motion, radians, within which sectors count towards the time to contact ahead.
 const AHEAD_RAD: f64 = 0.1;
 
-/// What is kept of a frame. It holds nothing that differs from one run to the next.
+/// The record of a frame. It has nothing that differs from one run to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// The frame's number, from 0.
     pub frame: u64,
-    /// Its time, seconds.
+    /// The frame's time, seconds.
     pub time_s: f64,
-    /// Where the vehicle is, metres NED.
+    /// The vehicle's position, metres NED.
     pub position_ned_m: DVec3,
-    /// How it moves over ground, m/s NED.
+    /// The vehicle's velocity over ground, m/s NED.
     pub velocity_ned_m_s: DVec3,
-    /// Its roll, pitch and yaw.
+    /// The vehicle's roll, pitch and yaw.
     pub roll_pitch_yaw_rad: [f64; 3],
-    /// Its angular rate, rad/s FRD.
+    /// The vehicle's angular rate, rad/s FRD.
     pub rate_body_rad_s: DVec3,
-    /// Its airspeed, m/s.
+    /// The airspeed, m/s.
     pub airspeed_m_s: f64,
-    /// From its middle to the nearest surface, metres.
+    /// The clearance from the vehicle's centre to the nearest surface, metres.
     pub clearance_m: f64,
-    /// How far it has come towards the goal, metres.
+    /// The progress towards the goal, metres.
     pub progress_m: f64,
-    /// How far it is to the right of the middle of the way, where that has one.
+    /// The offset to the right of the centre line, metres; `None` for courses without one.
     pub offset_m: Option<f64>,
-    /// Why the view says nothing; none if it does.
+    /// Why there is no valid view; `None` if there is one.
     pub invalid: Option<String>,
-    /// The share of the view that is trusted, 0 to 1.
+    /// The share of the field of view whose flow is trusted, 0 to 1.
     pub coverage: f64,
-    /// Angle between the direction of motion that the view tells and the true one; none where it tells none.
+    /// The angle between the view's heading and the true direction of motion; `None` without a heading.
     pub heading_error_rad: Option<f64>,
-    /// Time to contact along the direction of motion, as the view says within 0.1 rad of it.
+    /// The view's time to contact along the direction of motion, from the sectors within 0.1 rad of it.
     pub contact_s: Option<f64>,
-    /// The same, in truth.
+    /// The true time to contact along the direction of motion.
     pub true_contact_s: Option<f64>,
-    /// How far the flow is from the true one, where that is [measured](super::FlightConfig::measure).
+    /// The error of the flow, if it is [measured](super::FlightConfig::measure).
     pub measured: Option<Measured>,
-    /// What was decided.
+    /// The command decided at this frame.
     pub command: Command,
-    /// By what.
+    /// The origin of that command.
     pub source: Source,
-    /// How dangerous the way is that was chosen, 0 to 1.
+    /// The danger of the chosen arc, 0 to 1.
     pub danger: Option<f64>,
-    /// The command that acts from this frame to the next: one that was decided some frames before.
+    /// The command in effect from this frame to the next, decided some frames earlier.
     pub acting: Command,
 }
 
 impl Record {
-    /// What is kept of a frame: where the vehicle is, what the sensor says, and what became of it.
+    /// The record of a frame, from the vehicle's state, the sensor's output and the decision.
     pub(super) fn of(
         course: &Course,
         at: &SensorInput<'_>,
@@ -101,7 +101,8 @@ impl Record {
     }
 }
 
-/// Seconds until contact in a direction: by the median of the sectors around it, since a single one there says little.
+/// The time to contact in a direction, seconds: from the median of the sectors around it, as a single sector is too
+/// noisy.
 fn ahead_s(sectors: &Sectors, direction: DVec3) -> Option<f64> {
     let grid = sectors.grid;
     let around = (0..grid.len())

@@ -1,8 +1,8 @@
-//! Which sensor a flight steers by.
+//! The kinds of sensor that a flight can steer by.
 
 use crate::named::named;
 
-/// What the steering sees by: a ladder from what is known exactly to what a camera gives.
+/// The kind of sensor that a flight steers by, from exact knowledge to a camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Sensor {
@@ -10,25 +10,25 @@ pub enum Sensor {
     Depth,
     /// The true flow of each cell.
     Flow,
-    /// The true flow, blurred as a window blurs it, and noisy.
+    /// The true flow, blurred as by an estimator's window, with noise.
     NoisyFlow,
-    /// Pictures through a lens, and a [`Pipeline`](crate::Pipeline).
+    /// Images through a lens, and a [`Pipeline`](crate::Pipeline).
     #[default]
     Images,
 }
 
-/// What [`Sensor::NoisyFlow`] does to the true flow. The defaults stand for Farnebäck's flow in pictures of 320×240, as a
-/// flight computes it: the better half of the cells in a corridor are 0.064 px off in the median, which is a standard
-/// deviation of 0.055 px along each axis, and what windows of 3 px on each level (with the expansion's 1.2 px) let through is
-/// halved at the same detail as by a Gaussian of 3.1 px.
+/// The errors that [`Sensor::NoisyFlow`] adds to the true flow. The defaults stand for Farnebäck's flow in images of
+/// 320×240, as a flight computes it. There the median error of the better half of the cells in a corridor is 0.064 px,
+/// which corresponds to a standard deviation of 0.055 px along each axis. Windows of 3 px on each level, with the 1.2
+/// px of the expansion, halve the flow's contrast at the same detail as a Gaussian of 3.1 px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FlowNoise {
-    /// Standard deviation of the Gaussian that it is blurred with, in pixels, above 0.
+    /// Standard deviation of the Gaussian blur, in pixels, above 0.
     pub blur_px: f64,
-    /// Standard deviation of what is added to each cell along two axes, in pixels.
+    /// Standard deviation of the noise added to each cell along two axes, in pixels.
     pub white_px: f64,
-    /// Standard deviation of the factor that it is multiplied with, against 1.
+    /// Standard deviation of each cell's relative scale error.
     pub relative: f64,
 }
 
@@ -39,7 +39,7 @@ impl Default for FlowNoise {
 }
 
 impl Sensor {
-    /// All of them: the ladder from what is known exactly to what a camera gives.
+    /// All sensors, from exact knowledge to a camera.
     pub const ALL: [Self; 4] = [Self::Depth, Self::Flow, Self::NoisyFlow, Self::Images];
 
     /// The name: `depth`, `flow`, `noisy-flow` or `images`.

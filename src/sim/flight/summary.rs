@@ -1,4 +1,4 @@
-//! How a flight ended, in numbers.
+//! The summary of a flight.
 
 use glam::DVec3;
 
@@ -12,16 +12,16 @@ use crate::quantile::{above_share, sorted};
 pub enum Outcome {
     /// The goal was reached.
     Reached,
-    /// Something came nearer than the vehicle's radius.
+    /// A surface came nearer than the vehicle's radius.
     Crashed,
-    /// The vehicle left the band of altitudes.
+    /// The vehicle left the altitude band.
     LeftBand,
-    /// It took too long.
+    /// The flight took too long.
     TimedOut,
 }
 
 impl Outcome {
-    /// All of them, the best first.
+    /// All outcomes, the best first.
     pub const ALL: [Self; 4] = [Self::Reached, Self::Crashed, Self::LeftBand, Self::TimedOut];
 
     /// The name: `reached`, `crashed`, `left-band` or `timed-out`.
@@ -40,36 +40,37 @@ named!(Outcome, "outcome");
 /// A flight in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// How it ended.
+    /// How the flight ended.
     pub outcome: Outcome,
-    /// When, seconds.
+    /// When it ended, seconds.
     pub time_s: f64,
     /// Progress towards the goal, metres.
     pub progress_m: f64,
-    /// The way flown, metres.
+    /// The distance flown, metres.
     pub path_m: f64,
     /// The least clearance, metres.
     pub least_clearance_m: f64,
-    /// The clearance that is undercut for a twentieth of the time, metres.
+    /// The 5th percentile of the clearance over the frames, metres.
     pub low_clearance_m: f64,
-    /// Root mean square of the roll rate, rad/s: what control costs.
+    /// Root mean square of the roll rate, rad/s: a measure of control effort.
     pub roll_rate_rad_s: f64,
-    /// The share of frames without a cue, 0 to 1.
+    /// The share of frames without a valid cue, 0 to 1.
     pub invalid: f64,
-    /// Standard deviation of the offset from the middle of the way, metres, and its mean, where there is a middle.
+    /// Standard deviation and mean of the offset to the right of the centre line, metres; `None` for courses without
+    /// one.
     pub offset_m: Option<[f64; 2]>,
-    /// How far the flow is from the true one, where that is measured: medians over the frames.
+    /// The error of the flow, if it is measured: medians over the frames.
     pub measured: Option<Measured>,
 }
 
 impl Summary {
-    /// Progress a metre flown, 0 to 1.
+    /// Path efficiency: progress per distance flown, 0 to 1.
     pub fn efficiency(&self) -> f64 {
         if self.path_m > 0.0 { (self.progress_m / self.path_m).max(0.0) } else { 0.0 }
     }
 }
 
-/// Adds up what becomes a [`Summary`].
+/// Accumulates records into a [`Summary`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     clearances_m: Vec<f64>,
@@ -92,7 +93,7 @@ impl Tally {
         self.invalid += usize::from(record.invalid.is_some());
     }
 
-    /// The least clearance may have been between two frames.
+    /// The summary. The least clearance is passed in, as it may lie between two frames.
     pub(super) fn summary(&self, outcome: Outcome, last: &Record, least_clearance_m: f64) -> Summary {
         let count = self.clearances_m.len().max(1) as f64;
         let clearances_m = sorted(self.clearances_m.iter().copied());
@@ -126,7 +127,7 @@ mod tests {
         }
     }
 
-    /// The clearance that is undercut for a twentieth of the time.
+    /// The index behind the 5th percentile of the clearance.
     #[test]
     fn a_twentieth_of_the_frames_is_exact_for_every_length() {
         for frames in 1..5000_usize {

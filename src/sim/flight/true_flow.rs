@@ -1,12 +1,12 @@
-//! The true flow of bearings.
+//! The true flow of a bearing.
 
 use glam::{DMat3, DVec3};
 
 use crate::camera::Pose;
 use crate::sphere::model;
 
-/// How what is seen at a bearing and a nearness moved from one exact pose to the next, a turn taken out: where it is half-way,
-/// and the flow there in radians.
+/// The true flow of a point with this bearing and nearness, from one exact pose to the next, with a rotation taken out:
+/// its bearing half-way, and the flow there in radians.
 pub(super) fn true_flow(
     bearing: DVec3,
     nearness_per_m: f64,

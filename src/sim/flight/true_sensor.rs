@@ -1,4 +1,4 @@
-//! What the view would say if nearness or flow were known from the world itself.
+//! The sensors that compute nearness or flow from the world itself.
 
 use glam::{DMat3, DVec3};
 
@@ -15,14 +15,14 @@ use crate::sphere::{
 };
 use crate::steer::View;
 
-/// Sees through a pinhole that has a pixel for each cell of the view.
+/// Sees the world through a pinhole camera with one pixel per cell of the view.
 pub(super) struct TrueSensor {
     ideal: Camera,
     sensor: Sensor,
     noise: FlowNoise,
     random: Random,
     coarse: RayTable,
-    /// A pixel of the camera, in radians at its axis.
+    /// The angle of an ideal image's pixel on its axis, radians.
     pixel_rad: f64,
     cell_px: f64,
     aggregator: SectorAggregator,
@@ -70,17 +70,17 @@ impl TrueSensor {
         })
     }
 
-    /// The pinhole in whose pictures it looks.
+    /// The ideal pinhole camera, whose cells the sensor sees.
     pub(super) fn ideal(&self) -> &Camera {
         &self.ideal
     }
 
-    /// Takes a first look, of which nothing is said.
+    /// Records the pose of the first frame, which has no view.
     pub(super) fn begin(&mut self, pose: Pose) {
         self.before = Some(pose);
     }
 
-    /// What the view says at a moment; none of a first look. The turn is what the gyro tells of it.
+    /// The view at a frame; `None` without a previous pose. `turn` is the rotation by the gyro.
     pub(super) fn sense(&mut self, at: &SensorInput<'_>, turn: &DMat3, interval_s: f64) -> Option<View<'_>> {
         let before = self.before.replace(at.pose)?;
         let near = nearness(at.world, &self.coarse, &at.pose);
@@ -102,19 +102,19 @@ impl TrueSensor {
         Some(View { sectors, heading: self.heading })
     }
 
-    /// How each cell moved, by both exact poses, with the turn that the gyro tells taken out.
+    /// The flow of each cell between both exact poses, with the gyro's rotation taken out.
     fn flows(&self, near: &Plane, before: &Pose, pose: &Pose, turn: &DMat3) -> Vec<Option<CellFlow>> {
         let width = near.size.width as usize;
         let flow = |(i, nearness): (usize, &f32)| {
             let bearing = self.coarse.centre(i % width, i / width);
             let (bearing, flow_rad) = true_flow(bearing, f64::from(*nearness), [before, pose], turn);
-            // The sky shows nothing that a camera could follow.
+            // The sky has no texture to follow.
             (*nearness > 0.0).then_some(CellFlow { bearing, flow_rad, confidence: 1.0 })
         };
         near.data.iter().enumerate().map(flow).collect()
     }
 
-    /// What the window of an estimator and its noise do to a flow.
+    /// Adds an estimator's blur and noise to the flow.
     fn spoil(&mut self, flows: &mut [Option<CellFlow>]) {
         let width = self.coarse.size().width as usize;
         let rows = flows.len() / width;
@@ -146,7 +146,7 @@ impl TrueSensor {
         }
     }
 
-    /// Sectors of a nearness that is known.
+    /// Fills the sectors from the true nearness.
     fn sum_up(&mut self, near: &Plane, velocity_m_s: DVec3, interval_s: f64) {
         let grid = self.sectors.grid;
         let mut rates: Vec<Vec<f64>> = vec![Vec::new(); grid.len()];
@@ -170,7 +170,7 @@ impl TrueSensor {
                 coverage: rates.len() as f64 / cells.max(1) as f64,
                 confidence: 1.0,
                 nearness_rate_hz: [1.0 - self.quantile, 0.5, self.quantile].map(rate),
-                // So that either map of danger shows the same.
+                // So that either measure of danger gives the same.
                 divergence_hz: 2.0 * rate(self.quantile),
                 flow_rad_s: rate(0.5) * (p * p.dot(ahead) - ahead),
                 ..Sector::default()

@@ -59,7 +59,7 @@ fn a_given_flow_is_begun_with_and_forgotten() {
         let zero = begun(&mut engine, &images, &constant([0.0; 2]));
         assert_same(&zero, &cold[0], name);
         let given = begun(&mut engine, &images, &constant([2.0, -1.0]));
-        assert!(bits(&given) != bits(&zero), "{name}: the given flow was not begun with");
+        assert!(bits(&given) != bits(&zero), "{name}: the given flow was not used");
         let unknown = begun(&mut engine, &images, &constant([UNKNOWN_FLOW, f32::NAN]));
         assert_same(&unknown, &zero, name);
         // Without a warm start the next pair begins with zero motion again.

@@ -38,8 +38,8 @@ fn a_bank_is_taken_up_and_held() {
         let states = fly(&mut plane, &bank(expected.bank_deg), 6.0);
         let (before, last) = (&states[states.len() - 241], &states[states.len() - 1]);
         let turn = turn_rate_rad_s(before, last);
-        // The prototype's times are given to 0.01 s, and of a loop whose torques are not held over a step; 0.025 s are six
-        // steps. Rate and radius are given to three digits, and the height follows the gain of a steady error.
+        // The prototype's times are given to 0.01 s, for a loop whose torques are not held over a step; 0.025 s are six
+        // steps. Rate and radius are given to three digits, and the height follows from the gain of a steady error.
         near("t63", time_to(&states, 0.632 * expected.bank_deg), expected.t63_s, 0.025);
         near("t90", time_to(&states, 0.9 * expected.bank_deg), expected.t90_s, 0.025);
         near("turn", turn.to_degrees(), expected.turn_deg_s, 0.06);
@@ -174,8 +174,8 @@ fn no_command_and_no_step_makes_a_state_that_is_not_finite() {
     }
 }
 
-/// How far the roll and the track are from a delay, a largest rate and a time constant, degrees, in 0.8 s after steps of the
-/// command.
+/// The deviation of the roll and the track from a delay, a largest rate and a time constant, degrees, in the 0.8 s
+/// after steps of the command.
 fn off_deg(lag_s: f64, response: &Response) -> [f64; 2] {
     let track = |state: &VehicleState| state.velocity_ned_m_s.y.atan2(state.velocity_ned_m_s.x);
     let mut most: [f64; 2] = [0.0; 2];

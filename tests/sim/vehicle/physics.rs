@@ -6,7 +6,7 @@ use viewsphere::sim::vehicle::{Airframe, AirframeParams, Controls, GRAVITY_M_S2,
 
 use super::*;
 
-/// C_L and C_D far from the stall, as they stand in the textbook.
+/// C_L and C_D far from the stall, as in the textbook.
 fn lift_and_drag(params: &AirframeParams, attack_rad: f64) -> [f64; 2] {
     let ratio = params.span_m.powi(2) / params.wing_area_m2;
     let lift = params.lift_zero + TAU * ratio / (ratio + 2.0) * attack_rad;
@@ -25,7 +25,7 @@ fn in_trim_lift_is_weight_and_thrust_is_drag() {
         let [lift_n, drag_n] =
             lift_and_drag(&params, trim.attack_rad).map(|part| part * pressure_n(&params, speed_m_s));
         let (sin, cos) = trim.attack_rad.sin_cos();
-        // These formulas know no stall, which has a part of e^(−40 (α₀ ∓ α)) on either side: 0.4 % at 9 m/s and 7°.
+        // These formulas ignore the stall, whose share is e^(−40 (α₀ ∓ α)) on either side: 0.4 % at 9 m/s and 7°.
         let part = |attack_rad: f64| (-40.0 * (params.stall_rad - attack_rad)).exp();
         let stalled = part(trim.attack_rad) + part(-trim.attack_rad);
         near(
@@ -35,7 +35,7 @@ fn in_trim_lift_is_weight_and_thrust_is_drag() {
             1e-9 + 1.2 * stalled * lift_n,
         );
         near("drag", trim.controls.thrust_n * cos, drag_n, 1e-9 + 4.0 * stalled * drag_n);
-        // And it stays trimmed, up to rounding: ten seconds straight on.
+        // The trim holds, up to rounding, for ten seconds of straight flight.
         let mut plane = airframe(speed_m_s, Wind::calm());
         let begin = plane.state();
         for _ in 0..2400 {
@@ -96,7 +96,7 @@ fn phugoid_s(params: &AirframeParams, speed_m_s: f64) -> f64 {
         }
         sink_before = sink;
     }
-    // The first crest still holds the short period.
+    // The first crest still contains the short period.
     (crests[4] - crests[1]) / 3.0
 }
 
@@ -114,8 +114,8 @@ fn a_stiff_airframe_swings_in_lanchesters_period() {
     near("period", phugoid_s(&params, 12.0), lanchester_s, 0.02 * lanchester_s);
 }
 
-/// McRuer, Ashkenas & Graham, *Aircraft Dynamics and Automatic Control* (1973): ω² = g (M_w Z_u − M_u Z_w)/(Z_w M_q − V M_w).
-/// The default airframe is small and much damped in pitch, and swings in 1.6 times of Lanchester's period.
+/// McRuer, Ashkenas & Graham, *Aircraft Dynamics and Automatic Control* (1973): ω² = g (M_w Z_u − M_u Z_w)/(Z_w M_q − V
+/// M_w). The default airframe is small and strongly damped in pitch; its period is 1.6 times Lanchester's.
 #[test]
 fn the_airframe_swings_in_the_phugoids_period() {
     let params = AirframeParams::default();
@@ -132,13 +132,13 @@ fn the_airframe_swings_in_the_phugoids_period() {
         let m_q = per_inertia * params.pitch_damping * params.chord_m / (2.0 * speed_m_s);
         let square = GRAVITY_M_S2 * (m_w * z_u - m_u * z_w) / (z_w * m_q - speed_m_s * m_w);
         let expected_s = TAU / square.sqrt();
-        // An approximation that leaves the damping out: within 1 %.
+        // The approximation neglects the damping: within 1 %.
         near("period", phugoid_s(&params, speed_m_s), expected_s, 0.015 * expected_s);
     }
 }
 
-/// ½v² + gh: the air only ever takes energy, in any attitude. Rotation has an energy of its own, which the model's
-/// static moments exchange with the path in neither direction.
+/// ½v² + gh: the air only ever takes energy, in any attitude. The energy of rotation is separate; the model's static
+/// moments do not exchange it with that of the path.
 #[test]
 fn without_thrust_energy_falls_at_every_step() {
     let energy =

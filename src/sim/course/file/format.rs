@@ -1,4 +1,4 @@
-//! The members of a file, as serde reads and writes them.
+//! The members of a course file, as serde reads and writes them.
 
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -8,7 +8,7 @@ use crate::sim::course::LARGEST_M;
 pub(super) const FORMAT: &str = "viewsphere course";
 pub(super) const VERSION: u64 = 1;
 
-/// What every version of the format has.
+/// The members of every version of the format.
 #[derive(Deserialize)]
 #[serde(expecting = "an object in braces")]
 pub(super) struct Head {
@@ -16,7 +16,8 @@ pub(super) struct Head {
     pub(super) version: u64,
 }
 
-/// A whole file: of raw surfaces, which are read one by one so that an error names theirs, or of those that are written.
+/// A whole file. Surfaces are read as raw values, one by one, so that an error can name the surface; they are written
+/// as [`Entry`] values.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CourseFile<S> {
@@ -37,7 +38,7 @@ pub(super) struct CourseFile<S> {
     pub(super) surfaces: Vec<S>,
 }
 
-/// A number of metres, radians or none, within ±[`LARGEST_M`].
+/// A coordinate, length or angle within ±[`LARGEST_M`].
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Number(pub(super) f64);
@@ -48,7 +49,7 @@ impl TryFrom<f64> for Number {
     fn try_from(value: f64) -> Result<Self, String> {
         match value.abs() <= LARGEST_M {
             true => Ok(Self(value)),
-            // As serde puts it.
+            // In the form of serde's own messages, which `Part::problem` takes apart.
             false => Err(format!("invalid value: {value:?}, expected a number within ±{LARGEST_M}")),
         }
     }
@@ -72,14 +73,14 @@ pub(super) enum Kind {
     Box,
 }
 
-/// What every surface has.
+/// The members of every surface.
 #[derive(Deserialize)]
 #[serde(expecting = "an object in braces")]
 pub(super) struct SurfaceHead {
     pub(super) kind: Kind,
 }
 
-/// An entry of the list of surfaces as it is written, with the members of its kind.
+/// A surface as it is written: its kind and that kind's members.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub(super) enum Entry {
@@ -90,7 +91,7 @@ pub(super) enum Entry {
     Box(Cuboid),
 }
 
-/// Members of a kind: [`SurfaceHead`] has read the kind itself.
+/// The members of a kind. [`SurfaceHead`] has already read the kind itself.
 macro_rules! members {
     ($(#[$meta:meta])* $name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),* $(,)? }) => {
         $(#[$meta])*
@@ -105,12 +106,12 @@ macro_rules! members {
 }
 
 members!(
-    /// The plane z = 0, which has no numbers.
+    /// The plane z = 0. It needs no numbers.
     Ground {}
 );
 members!(Plane { point_m: [Number; 3], normal: [Number; 3] });
 members!(
-    /// Upright on the ground. It is written as a rectangle.
+    /// An upright wall on the ground. It is written back as a rectangle.
     Wall { from_m: [Number; 2], to_m: [Number; 2], height_m: Number }
 );
 members!(Rectangle { centre_m: [Number; 3], to_right_m: [Number; 3], to_top_m: [Number; 3] });
@@ -126,7 +127,7 @@ members!(
     }
 );
 
-/// A member that may be left out, but is not `null`.
+/// Reads a member that may be missing, but not `null`.
 fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
     T::deserialize(from).map(Some)
 }

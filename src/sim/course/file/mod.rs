@@ -1,8 +1,8 @@
-//! Files of courses: JSON that can be written by hand.
+//! Course files: JSON that can be written by hand.
 //!
-//! Metres and radians, NED. `seed`, `start_yaw_rad`, `goal_yaw_rad` and `centre_line_m`, a list of points (north, east), may
-//! be left out and are then 0 or empty; every other member has to be there once, and no further one is known. docs/worlds.md
-//! says what each is.
+//! Values are in metres and radians, NED. `seed`, `start_yaw_rad`, `goal_yaw_rad` and `centre_line_m`, an array of
+//! points (north, east), are optional and default to 0 or empty. Every other member is required exactly once, and
+//! unknown members are errors. docs/worlds.md describes each member.
 //!
 //! ```json
 //! {
@@ -22,9 +22,9 @@
 //! }
 //! ```
 //!
-//! Further kinds are `plane` with `point_m` and `normal`, and `rectangle` with `centre_m`, `to_right_m` and `to_top_m`, as
-//! [`Surface`](crate::sim::Surface) has them. A box has either `yaw_rad` or `axes`, the directions of its three edges, or
-//! neither. A surface's place in the list is part of its texture.
+//! Further kinds are `plane` with `point_m` and `normal`, and `rectangle` with `centre_m`, `to_right_m` and `to_top_m`,
+//! as in [`Surface`](crate::sim::Surface). A box has either `yaw_rad` or `axes`, the directions of its three edges, or
+//! neither. The texture of a surface depends on its index in the array.
 
 mod format;
 mod problem;

@@ -1,4 +1,4 @@
-//! What is wrong with a file, in this crate's words.
+//! Errors of course files, with serde's messages in this crate's form.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -11,27 +11,30 @@ use serde_json::error::Category;
 use crate::error::{Error, Result};
 use crate::sim::course::LARGEST_M;
 
-/// Characters of a wrong value that are shown.
+/// The most characters of an invalid value that are shown.
 const SHOWN: usize = 80;
 
-/// A part of a file: all of it, or a surface.
+/// A part of a file: the whole file, or one surface.
 #[derive(Clone, Copy)]
 pub(super) struct Part<'a> {
     /// The file's name, for messages.
     pub(super) path: &'a Path,
-    /// What it is: `course file` or `surface`.
+    /// The name of the part: `course file` or `surface`.
     pub(super) what: &'static str,
-    /// The number of the surface.
+    /// The surface's index.
     pub(super) surface: Option<usize>,
 }
 
 impl Part<'_> {
-    /// Reads the part from its text.
+    /// Parses the part from its text.
     pub(super) fn read<'de, T: Deserialize<'de>>(&self, text: &'de [u8]) -> Result<T> {
-        // A struct of serde is read from a list of its values too.
+        // Serde would also read a struct from an array of its values.
         if let Some(first @ (b'[' | b'"')) = text.trim_ascii_start().first().copied() {
-            let found =
-                if first == b'[' { Cow::from("a list") } else { String::from_utf8_lossy(text.trim_ascii()) };
+            let found = if first == b'[' {
+                Cow::from("an array")
+            } else {
+                String::from_utf8_lossy(text.trim_ascii())
+            };
             return Err(self.wrong(self.what, found, "an object in braces"));
         }
         let mut json = Deserializer::from_slice(text);
@@ -54,7 +57,7 @@ impl Part<'_> {
         Error::format(self.path, member, shortened(&found.to_string()) + &place, expected)
     }
 
-    /// An error about a value, as one about the file that it is from.
+    /// Turns an error about a value into one that also names the file.
     pub(super) fn in_file(&self, error: Error) -> Error {
         match error {
             Error::Parameter { name, value, expected } => self.wrong(name, value, expected),
@@ -62,8 +65,8 @@ impl Part<'_> {
         }
     }
 
-    /// What serde says of a member: an invalid type or value and what was expected; or that there is no such member, none or
-    /// two of them.
+    /// The error of a member, from serde's message: an invalid type or value, an unknown member, a missing or a
+    /// repeated one.
     fn problem(&self, member: &str, error: &serde_json::Error) -> Error {
         let text = error.to_string();
         if error.classify() != Category::Data {
@@ -72,10 +75,10 @@ impl Part<'_> {
         let text = text.rfind(" at line ").map_or(&*text, |end| &text[..end]);
         let named = |prefix: &str| Some(text.strip_prefix(prefix)?.trim_matches('`').to_owned());
         if let Some(name) = named("missing field ") {
-            return self.wrong(name, "missing", "it once");
+            return self.wrong(name, "missing", "exactly one");
         }
         if let Some(name) = named("duplicate field ") {
-            return self.wrong(name, "there twice", "it once");
+            return self.wrong(name, "given twice", "exactly one");
         }
         let (found, expected) = text.split_once(", expected ").unwrap_or((text, "something else"));
         let expected = plain(expected);
@@ -93,7 +96,8 @@ impl Part<'_> {
         self.wrong(member, found, expected)
     }
 
-    /// A message with its line and column, where these are the file's.
+    /// The message, with line and column only for the whole file: those of a surface do not count from the beginning of
+    /// the file.
     fn placed<'t>(&self, text: &'t str) -> &'t str {
         match (self.surface, text.rfind(" at line ")) {
             (Some(_), Some(end)) => &text[..end],
@@ -102,11 +106,11 @@ impl Part<'_> {
     }
 }
 
-/// A value from serde's words for it, such as "integer `3`".
+/// A value, from serde's description of it, such as "integer `3`".
 fn shown(value: &str) -> &str {
     match value {
         "map" => "an object",
-        "sequence" => "a list",
+        "sequence" => "an array",
         _ => match value.split_once('`') {
             Some((_, number)) => number.trim_end_matches('`'),
             None => value.strip_prefix("string ").unwrap_or(value),
@@ -114,13 +118,13 @@ fn shown(value: &str) -> &str {
     }
 }
 
-/// What was expected, from serde's words for it.
+/// The expectation, from serde's description of it.
 fn plain(expected: &str) -> String {
     match expected {
         "u64" => "a whole number from 0 to 2^64 - 1".to_owned(),
         "f64" => format!("a number within ±{LARGEST_M}"),
         "a string" => "a text".to_owned(),
-        "a sequence" => "a list in brackets".to_owned(),
+        "a sequence" => "an array in brackets".to_owned(),
         other => other.trim_start_matches("one of ").replace('`', ""),
     }
 }

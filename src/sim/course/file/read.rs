@@ -14,13 +14,13 @@ use crate::error::{Error, Result};
 use crate::sim::course::{Course, MAX_SURFACES, wall_between};
 use crate::sim::{Surface, World};
 
-/// No file is longer: the most surfaces of a world, each in more words than it needs.
+/// The longest file accepted, in bytes: room for the most surfaces of a world, generously formatted.
 const MAX_FILE: u64 = 16 << 20;
 
-/// Reads a course from a file, and checks it with [`Course::validate`].
+/// Reads a course from a file and checks it with [`Course::validate`].
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Format`] naming what is missing, wrong or not known, and in which surface.
+/// [`Error::Io`]; [`Error::Format`] naming the missing, invalid or unknown member and its surface.
 pub fn read(path: impl AsRef<Path>) -> Result<Course> {
     let path = path.as_ref();
     let mut bytes = Vec::new();
@@ -29,17 +29,17 @@ pub fn read(path: impl AsRef<Path>) -> Result<Course> {
     decode(path, &bytes)
 }
 
-/// A course from the bytes of a file. `path` is the name for error messages.
+/// Parses a course from the bytes of a file. `path` is the name in error messages.
 ///
 /// # Errors
-/// [`Error::Format`] as [`read`].
+/// [`Error::Format`] as in [`read`].
 pub fn decode(path: &Path, bytes: &[u8]) -> Result<Course> {
     if bytes.len() as u64 > MAX_FILE {
         let expected = format!("at most {MAX_FILE} bytes");
         return Err(Error::format(path, "file length", format!("over {MAX_FILE} bytes"), expected));
     }
     let part = Part { path, what: "course file", surface: None };
-    // Another version may have other members.
+    // The version comes first, as the members of others may differ.
     let head: Head = part.read(bytes)?;
     if head.format != FORMAT {
         return Err(part.wrong("format", format_args!("{:?}", head.format), format_args!("{FORMAT:?}")));
@@ -102,7 +102,7 @@ fn surface(part: &Part<'_>, text: &[u8]) -> Result<Surface> {
                 (None, Some(axes)) => DMat3::from_cols_array_2d(&axes.map(Number::values)),
                 (Some(yaw_rad), Some(_)) => {
                     let found = format_args!("{} beside axes", yaw_rad.0);
-                    return Err(part.wrong("yaw_rad", found, "one of the two, or neither"));
+                    return Err(part.wrong("yaw_rad", found, "at most one of the two"));
                 }
             };
             Surface::cuboid(Number::values(centre_m), turn, Number::values(edges_m))

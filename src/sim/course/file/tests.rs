@@ -82,7 +82,7 @@ fn the_courses_of_all_kinds_are_read_as_they_were_written() {
             assert_eq!(read(&path).unwrap(), course, "{kind} {seed}");
         }
     }
-    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "something was left beside the file");
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "a temporary file remains");
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn what_is_wrong_is_named_with_its_place() {
             "\"name\": \"a\\nb\"",
             "name is \"a\\nb\", expected a line of 1 to 200 characters",
         ),
-        ("\"name\": \"yard\",", "", "name is missing, expected it once"),
+        ("\"name\": \"yard\",", "", "name is missing, expected exactly one"),
         (
             "\"name\": \"yard\"",
             "\"nam\": \"yard\"",
@@ -111,7 +111,7 @@ fn what_is_wrong_is_named_with_its_place() {
         ("120", "1e300", "length_m is 1e300, expected a number within ±1000000"),
         ("120", "NaN", "course file is broken: expected value at line 3 column 43, expected JSON"),
         ("120", "1e999", "course file is broken: number out of range at line 3"),
-        ("[2, 30]", "[30, 2]", "altitude_m is 30 to 2, expected a band from 0 or more to something higher"),
+        ("[2, 30]", "[30, 2]", "altitude_m is 30 to 2, expected a band with the lower end first"),
         ("[2, 30]", "[2]", "altitude_m is of length 1, expected an array of length 2"),
         (
             "-10]",
@@ -123,8 +123,8 @@ fn what_is_wrong_is_named_with_its_place() {
             "-31]",
             "start_ned_m is [0, 0, -31], at an altitude of 31 m, expected one within altitude_m, 2 to 30 m",
         ),
-        ("\"version\": 1", "\"version\": 1, \"version\": 1", "version is there twice, expected it once"),
-        ("0.3", "0.3, \"radius_m\": 0.4", "radius_m is there twice in surface 2, expected it once"),
+        ("\"version\": 1", "\"version\": 1, \"version\": 1", "version is given twice, expected exactly one"),
+        ("0.3", "0.3, \"radius_m\": 0.4", "radius_m is given twice in surface 2, expected exactly one"),
         (
             "\"ground\"",
             "\"cone\"",
@@ -136,7 +136,7 @@ fn what_is_wrong_is_named_with_its_place() {
             "\"ground\"",
             "surface is \"ground\" in surface 0, expected an object in braces",
         ),
-        (", \"radius_m\": 0.3", "", "radius_m is missing in surface 2, expected it once"),
+        (", \"radius_m\": 0.3", "", "radius_m is missing in surface 2, expected exactly one"),
         ("0.3", "-0.3", "cylinder radius is -0.3 in surface 2, expected above 0 m and finite"),
         ("-25]", "0]", "cylinder axis is [0, 0, 0] in surface 2, expected a finite vector that is not 0"),
         (
@@ -159,11 +159,11 @@ fn what_is_wrong_is_named_with_its_place() {
             "\"axes\": [[2, 0, 0], [0, 1, 0], [0, 0, 1]]",
             "world_from_box is [[2, 0, 0], [0, 1, 0], [0, 0, 1]] in surface 3, expected a rotation",
         ),
-        ("\"surfaces\": [", "\"surfaces\": 3, \"rest\": [", "surfaces is 3, expected a list in brackets"),
+        ("\"surfaces\": [", "\"surfaces\": 3, \"rest\": [", "surfaces is 3, expected an array in brackets"),
         (
             "\"yaw_rad\": 0.5",
             "\"yaw_rad\": 0.5, \"axes\": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
-            "yaw_rad is 0.5 beside axes in surface 3, expected one of the two, or neither",
+            "yaw_rad is 0.5 beside axes in surface 3, expected at most one of the two",
         ),
         (
             "\"yaw_rad\": 0.5",
@@ -173,7 +173,7 @@ fn what_is_wrong_is_named_with_its_place() {
         (
             "{\"kind\": \"ground\"}",
             "[\"ground\"]",
-            "surface is a list in surface 0, expected an object in braces",
+            "surface is an array in surface 0, expected an object in braces",
         ),
         ("0.3", "1e999", "surface is broken: number out of range in surface 2, expected JSON"),
         ("]\n}", "]\n", "course file is broken: EOF while parsing an object at line"),
@@ -190,15 +190,15 @@ fn what_is_wrong_is_named_with_its_place() {
 
 #[test]
 fn a_file_that_is_no_object_is_refused() {
-    for (text, found) in [("", "broken: EOF"), ("[]", "a list"), ("3", "3"), (" \"yard\"", "\"yard\"")] {
+    for (text, found) in [("", "broken: EOF"), ("[]", "an array"), ("3", "3"), (" \"yard\"", "\"yard\"")] {
         let message = load(text).unwrap_err().to_string();
         assert!(message.starts_with(&format!("a.json: course file is {found}")), "{message}");
     }
     let message = load("[\"viewsphere course\", 1]").unwrap_err().to_string();
-    assert_eq!(message, "a.json: course file is a list, expected an object in braces");
+    assert_eq!(message, "a.json: course file is an array, expected an object in braces");
 }
 
-/// What another version has beside is no reason to say anything but that it is another one.
+/// The members of another version do not matter: its version is the error.
 #[test]
 fn another_version_is_named_first() {
     assert_eq!(error("\"version\": 1", "\"version\": 2, \"fog\": []"), "a.json: version is 2, expected 1");
@@ -281,7 +281,7 @@ proptest! {
         climbed in 0.0..=1.0_f64,
     ) {
         let (start_yaw_rad, goal_yaw_rad, length_m, low, high) = numbers;
-        // Within the band, else it is none to be written.
+        // A start outside the band would be an error.
         let start = DVec3 { z: -(low + climbed * (high - low)).min(high), ..start };
         let world = World { surfaces, up_world: DVec3::NEG_Z };
         prop_assume!(world.clearance_m(start) > 0.0);

@@ -13,22 +13,22 @@ use crate::io::write_bytes;
 use crate::sim::Form;
 use crate::sim::course::Course;
 
-/// Point and normal of the plane that needs no numbers.
+/// Point and normal of the plane that is written as `ground`.
 const GROUND: [DVec3; 2] = [DVec3::ZERO, DVec3::NEG_Z];
 
-/// Writes a course to a file, beside its place and then renamed into it.
+/// Writes a course to a file. The file is written under a temporary name and then renamed.
 ///
 /// # Errors
-/// As [`encode`], and [`Error::Io`].
+/// As in [`encode`], and [`Error::Io`].
 pub fn write(path: impl AsRef<Path>, course: &Course) -> Result<()> {
     write_bytes(path, encode(course)?.as_bytes())
 }
 
-/// A course as the text of a file, from which [`decode`](super::decode) makes the same course to the last bit. Each surface
-/// has a line.
+/// Formats a course as the text of a file, with one line per surface. [`decode`](super::decode) reads back the same
+/// course, bit for bit.
 ///
 /// # Errors
-/// As [`Course::validate`].
+/// As in [`Course::validate`].
 pub fn encode(course: &Course) -> Result<String> {
     course.validate()?;
     let file = CourseFile {
@@ -49,7 +49,7 @@ pub fn encode(course: &Course) -> Result<String> {
         surfaces: course.world.surfaces.iter().map(|surface| members(surface.form())).collect(),
     };
     let mut text = Vec::new();
-    let wrong = |error: String| Error::parameter("course", error, "one that JSON can hold");
+    let wrong = |error: String| Error::parameter("course", error, "one that JSON can represent");
     file.serialize(&mut Serializer::with_formatter(&mut text, Lines::default()))
         .map_err(|error| wrong(error.to_string()))?;
     text.push(b'\n');
@@ -84,19 +84,19 @@ fn vector(vector: DVec3) -> [Number; 3] {
     vector.to_array().map(Number)
 }
 
-/// Lays a file out by lines: one for each member of the whole, and one for each entry of a list that holds more than numbers.
+/// A JSON formatter with one line per member of the file, and one per entry of an array of objects or arrays.
 #[derive(Default)]
 struct Lines {
-    /// How many lists and objects the place is in.
+    /// The number of open arrays and objects.
     depth: usize,
-    /// Whether the list has had entries on lines of their own.
+    /// Whether the array has entries on lines of their own.
     entries: bool,
-    /// Whether the entry that comes next stands behind a comma.
+    /// Whether the next entry follows a comma on the same line.
     after_comma: bool,
 }
 
 impl Lines {
-    /// Begins a list or an object: an entry of a list of the whole file is on a line of its own.
+    /// Begins an array or object. As an entry of one of the file's own arrays it starts a line.
     fn begin<W: ?Sized + Write>(&mut self, out: &mut W, bracket: &[u8]) -> io::Result<()> {
         let space: &[u8] = match (self.depth, self.after_comma) {
             (2, _) => b"\n    ",
