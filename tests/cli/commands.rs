@@ -320,7 +320,7 @@ fn the_demo_needs_no_gpu_and_says_what_it_computes_on() {
         run_with(folder.path(), &["demo", "--size", "96x72", "--seconds", "0.1", "-o", "d"], b"", true)
             .well();
     let text = ended.text();
-    for word in ["mean endpoint error", "frames a second", "pictures   in d"] {
+    for word in ["mean endpoint error", "frames per second", "images     in d"] {
         assert!(text.contains(word), "{text}");
     }
     for name in [

@@ -144,7 +144,7 @@ fn parameters() {
         (&["--winsize", "1"], &["winsize is 1", "2 to 1024"]),
         (&["--iterations", "0"], &["iterations is 0", "1 to 1000"]),
         (&["--poly-n", "33"], &["poly_n is 33"]),
-        (&["--update", "increment"], &["iterations is 3", "a box averages increments"]),
+        (&["--update", "increment"], &["iterations is 3", "1 with a box window of increments"]),
         (&["--preset", "best"], &["best", "fast, default, accurate, increment"]),
         (&["--window", "round"], &["round", "box, gaussian"]),
         (&["--backend", "tpu"], &["tpu", "gpu, cpu"]),
