@@ -27,9 +27,10 @@ use crate::sim::flight::{FRAME_S, FlightConfig};
 
 /// Show flow, time to contact and steering on one page.
 ///
-/// Computes the flow of a synthetic pair and compares it with the known motion; then flies through a simulated world on
-/// nothing but the flow of its camera's images, a gyro and an airspeed sensor. Both are shown on one self-contained
-/// page, index.html: open it in a browser. The last line of output is its path.
+/// Computes the flow of a synthetic pair and compares it with the known motion; then flies through a simulated world,
+/// whose obstacles it sees only by the flow of its camera's images and a gyro. Steering also gets airspeed, attitude and
+/// altitude. Both are shown on one self-contained page, index.html: open it in a browser. The last line of output is
+/// its path.
 ///
 /// Computes on any adapter, also on a software adapter such as lavapipe; without one, on the CPU backend. If a software
 /// adapter is too slow for the flight and was not asked for, the CPU backend flies; page and output say so.
