@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
 fn store(four: u32, y: u32, equations: Five) {
     let stride = (params.width + 3u) / 4u;
-    let d = solution(equations);
+    let d = solution(equations, 1e-3);
     let u = repeat_last(d.u, 4u * four, params.width);
     let v = repeat_last(d.v, 4u * four, params.width);
     if four < stride && y < params.height {

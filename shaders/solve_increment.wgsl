@@ -1,10 +1,11 @@
 // As solve.wgsl, with the solution added to the flow so far.
-// Farnebäck 2003, section 3; the determinant is kept off zero by 10⁻³.
+// Farnebäck 2003, section 3.
 
 struct Params {
     width: u32,
     height: u32,
     radius: u32,
+    regular: f32, // added to the determinant
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -29,7 +30,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 fn store(four: u32, y: u32, equations: Five) {
     let stride = (params.width + 3u) / 4u;
     let row = 2u * min(y, params.height - 1u) * stride + min(four, stride - 1u);
-    let d = solution(equations);
+    let d = solution(equations, params.regular);
     let u = repeat_last(so_far[row] + d.u, 4u * four, params.width);
     let v = repeat_last(so_far[row + stride] + d.v, 4u * four, params.width);
     if four < stride && y < params.height {

@@ -1,11 +1,12 @@
-// Samples a coarser level's flow bilinearly at this level's pixels and scales it to their size.
+// Samples a coarser level's flow, or another image of some channels, bilinearly at this level's pixels and scales it.
 
 struct Params {
     width: u32,
     height: u32,
     in_width: u32,
     in_height: u32,
-    scale: f32, // of the displacements
+    scale: f32, // of the values
+    channels: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -34,11 +35,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let left = vec4u(u32(a.x), u32(b.x), u32(c.x), u32(d.x)) - 4u * first;
     let right = min(left + 1u, vec4u(params.in_width - 1u - 4u * first));
     let fraction = vec4f(a.y, b.y, c.y, d.y);
-    for (var channel = 0u; channel < 2u; channel++) {
+    for (var channel = 0u; channel < min(params.channels, 8u); channel++) {
         let here = columns(first, y, channel);
         let next = columns(first + 1u, y, channel);
         let mixed = mix(pick(here, next, left), pick(here, next, right), fraction);
-        flow[(2u * id.y + channel) * stride + id.x] = params.scale * mixed;
+        flow[(params.channels * id.y + channel) * stride + id.x] = params.scale * mixed;
     }
 }
 
@@ -48,7 +49,7 @@ fn columns(four: u32, y: vec2f, channel: u32) -> vec4f {
     let x4 = min(four, stride - 1u);
     let above = u32(y.x);
     let below = min(above + 1u, params.in_height - 1u);
-    return mix(coarse[(2u * above + channel) * stride + x4], coarse[(2u * below + channel) * stride + x4], y.y);
+    return mix(coarse[(params.channels * above + channel) * stride + x4], coarse[(params.channels * below + channel) * stride + x4], y.y);
 }
 
 // The columns with the given numbers, of eight.

@@ -2,7 +2,7 @@
 //!
 //! *Optical flow* is the displacement of each pixel from one frame to the next. With a calibrated camera, and better
 //! with a gyro, it tells which way the camera moves and in how many seconds it will touch what it sees, without any
-//! distance being measured. viewsphere computes the flow (Farnebäck's method, or dense Lucas–Kanade), carries it to the
+//! distance being measured. viewsphere computes the flow (Farnebäck's method, the same with total-variation smoothness, or dense Lucas–Kanade), carries it to the
 //! view sphere, summarizes it in sectors, raises alarms, and steers a fixed wing around what is near.
 //!
 //! Per-pixel work is done by compute kernels. Each kernel exists twice: in WGSL, for any GPU that `wgpu` reaches, and

@@ -33,6 +33,8 @@ enum Start {
 pub(super) struct Iteration {
     /// The level's number, 0 for the finest.
     pub(super) k: usize,
+    /// The iteration's number on its level, from 1.
+    pub(super) number: u32,
     /// The level.
     pub(super) level: Level,
     /// Its label, for example `level 2, iteration 1`.
@@ -77,11 +79,11 @@ impl CoarseToFine {
         Self { levels: levels.iter().enumerate().map(flow_level).collect(), pyr_scale, start }
     }
 
-    /// The steps of all levels, coarsest first, with this many iterations on each; `iterate` adds the steps of one
-    /// iteration. The search begins with `initial`, if the plan has one, and the finest level's flow goes to `flow`.
+    /// The steps of all levels, coarsest first, with the iterations that `iterations` gives for each level; `iterate` adds
+    /// the steps of one iteration. A level without iterations has the flow of the coarser one. The search begins with `initial`, if the plan has one, and the finest level's flow goes to `flow`.
     pub(super) fn steps(
         &self,
-        iterations: u32,
+        iterations: impl Fn(usize) -> u32,
         initial: BufId,
         flow: BufId,
         iterate: impl Fn(&mut Vec<Step>, Iteration),
@@ -90,6 +92,7 @@ impl CoarseToFine {
         let mut coarser: Option<(BufId, Level)> = None;
         for (k, level) in self.levels.iter().enumerate().rev() {
             let own = level.flow.unwrap_or(flow);
+            let iterations = iterations(k);
             // The buffer of the flow after this many iterations: after the last one the level's own.
             let after = |done: u32| match level.other {
                 Some(other) if !(iterations - done).is_multiple_of(2) => other,
@@ -103,12 +106,20 @@ impl CoarseToFine {
             }
             for i in 1..=iterations {
                 let label = format!("level {k}, iteration {i}");
-                iterate(&mut steps, Iteration { k, level: level.level, label, so_far, flow: after(i) });
+                iterate(
+                    &mut steps,
+                    Iteration { k, number: i, level: level.level, label, so_far, flow: after(i) },
+                );
                 so_far = after(i);
             }
             coarser = Some((own, level.level));
         }
         steps
+    }
+
+    /// The flow of a level; `None` for the finest one, whose flow is the plan's.
+    pub(super) fn flow(&self, k: usize) -> Option<BufId> {
+        self.levels[k].flow
     }
 
     /// The step that reads the coarser level's flow as the initial flow.
@@ -124,6 +135,7 @@ impl CoarseToFine {
                 in_width: of.size.width,
                 in_height: of.size.height,
                 scale: (1.0 / self.pyr_scale) as f32,
+                channels: 2,
             },
             &[coarse, place_x, place_y],
             &[(flow, Shape::planar(size, 2))],

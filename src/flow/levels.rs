@@ -22,11 +22,16 @@ pub struct Level {
 /// The levels from the finest to the coarsest: the full image and at most `levels` reduced ones, as in OpenCV's
 /// `calcOpticalFlowFarneback`. Levels whose shorter side would be under 32 pixels are left out.
 pub fn levels(size: Size, pyr_scale: f64, levels: u32) -> Vec<Level> {
+    levels_down_to(size, pyr_scale, levels, SMALLEST_SIDE)
+}
+
+/// As [`levels`], without levels whose shorter side would be under `smallest` pixels.
+pub(super) fn levels_down_to(size: Size, pyr_scale: f64, levels: u32, smallest: f64) -> Vec<Level> {
     let mut result = Vec::new();
     let mut scale = 1.0;
     for k in 0..=levels {
         let side = |side: u32| f64::from(side) * scale;
-        if k > 0 && side(size.width.min(size.height)) < SMALLEST_SIDE {
+        if k > 0 && side(size.width.min(size.height)) < smallest {
             break;
         }
         let round = |side: f64| side.round_ties_even() as u32;

@@ -246,8 +246,8 @@ impl Stages for LucasKanadeStages {
     }
 
     fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
-        let mut steps = self.coarse_to_fine.steps(self.iterations, initial, flow, |steps, iteration| {
-            let Iteration { k, level, label, so_far, flow } = iteration;
+        let mut steps = self.coarse_to_fine.steps(|_| self.iterations, initial, flow, |steps, iteration| {
+            let Iteration { k, level, label, so_far, flow, .. } = iteration;
             self.equations(steps, k, &label, slots, so_far, 0);
             let params = solve::Params { width: level.size.width, height: level.size.height, radius: self.radius };
             let inputs = [self.columns, self.window_x];

@@ -6,8 +6,10 @@
 
 mod coarse_to_fine;
 mod estimator;
+mod expansions;
 mod flow_plan;
 mod levels;
+mod normalized;
 mod parameter;
 mod pyramid;
 
@@ -116,6 +118,7 @@ macro_rules! estimators {
 estimators!(
     ($)
     farneback: Farneback,
+    farneback_tv: FarnebackTv,
     lucas_kanade: LucasKanade,
 );
 

@@ -21,9 +21,10 @@ pub(super) const TABLE: usize = 4096;
 pub struct DispatchShape {
     /// Invocations per workgroup in x and y.
     pub workgroup: [u32; 2],
-    /// Pixels per invocation in x and y: the shader's constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be
-    /// `override` constants.
-    pub span: [u32; 2],
+    /// Pixels per workgroup in x and y: the workgroup's size times the pixels per invocation, which are the shader's
+    /// constant `SPAN`, or its `SPAN_X` and `SPAN_Y`, which may be `override` constants. A shader whose invocations share
+    /// the work of a tile has the constant `TILE` in their place.
+    pub tile: [u32; 2],
     /// Channels that lie side by side and are processed as one row: the shader's constant `SIDE_BY_SIDE`, or 1.
     pub side_by_side: u32,
     /// Which inputs are tables: bit i for input i.
@@ -33,7 +34,7 @@ pub struct DispatchShape {
 impl DispatchShape {
     /// The number of workgroups for an image of this many columns and rows.
     pub fn workgroups(self, columns: u32, rows: u32) -> [u32; 3] {
-        let count = |pixels: u32, axis: usize| pixels.div_ceil(self.workgroup[axis] * self.span[axis]);
+        let count = |pixels: u32, axis: usize| pixels.div_ceil(self.tile[axis]);
         [count(columns * self.side_by_side, 0), count(rows, 1), 1]
     }
 }
@@ -87,16 +88,19 @@ pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchSha
     }
     let number = |name: &str| number(&module, name).or_else(|| number(&resolved, name));
     let pair = || Some([number("SPAN_X")?, number("SPAN_Y")?]);
-    let span = span(&module).or_else(pair).filter(|span| !span.contains(&0)).unwrap_or_else(|| {
+    let span = constant_pair(&module, "SPAN").or_else(pair).map(|[span_x, span_y]| [x * span_x, y * span_y]);
+    let tile = span.or_else(|| constant_pair(&module, "TILE")).filter(|tile| !tile.contains(&0));
+    let tile = tile.unwrap_or_else(|| {
         problems.push(
-            "constant SPAN is missing, expected a vec2u of pixels of an invocation, or SPAN_X and SPAN_Y, each a u32"
+            "constant SPAN is missing, expected a vec2u of pixels of an invocation, or SPAN_X and SPAN_Y, each a u32, \
+             or TILE, a vec2u of pixels of a workgroup"
                 .to_owned(),
         );
         [1, 1]
     });
     let side_by_side = number("SIDE_BY_SIDE").unwrap_or(1);
     if problems.is_empty() {
-        Ok(DispatchShape { workgroup: [x, y], span, side_by_side, tables })
+        Ok(DispatchShape { workgroup: [x, y], tile, side_by_side, tables })
     } else {
         Err(fail(problems.join("; ")))
     }
@@ -266,9 +270,9 @@ fn number(module: &Module, name: &str) -> Option<u32> {
     }
 }
 
-/// The value of the constant `SPAN`, which is one `vec2u`.
-fn span(module: &Module) -> Option<[u32; 2]> {
-    let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some("SPAN"))?;
+/// The value of a constant that is one `vec2u`.
+fn constant_pair(module: &Module, name: &str) -> Option<[u32; 2]> {
+    let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name))?;
     let Expression::Compose { components, .. } = &module.global_expressions[constant.init] else {
         return None;
     };

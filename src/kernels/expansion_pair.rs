@@ -25,6 +25,9 @@ pub(super) struct ExpansionPair<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) stride: usize,
+    /// The share of its Hessian by which each of the four expansions around a place is continued to the place, before the
+    /// slopes are averaged; 0 averages the slopes as they are.
+    pub(super) kappa: f32,
 }
 
 /// The common model of the two frames at a block of pixels: A the mean of both, and b = −½ (b2 − b1).
@@ -50,6 +53,8 @@ pub(super) struct Model {
 struct Places {
     first: [u32; BLOCK],
     weights: [Block; 4],
+    /// The place's distance from the pixel above and to the left, along x and along y.
+    fraction: [Block; 2],
     inside: Block,
 }
 
@@ -58,6 +63,8 @@ struct Places {
 struct Gathered {
     quads: [[f32; 4]; BLOCK],
     cross_terms: [[f32; 4]; BLOCK],
+    /// The sums by which A_xx and A_yy continue the slopes.
+    continued: [[f32; 2]; BLOCK],
 }
 
 impl ExpansionPair<'_> {
@@ -66,7 +73,8 @@ impl ExpansionPair<'_> {
     fn model(&self, x0: usize, y: usize, block: &Ours<'_>) -> Model {
         let places = self.places(x0, y, block.u, block.v);
         let (second, cross_terms, certainty_1) = match self.certainty_1 {
-            None => self.second(&places),
+            None if self.kappa == 0.0 => self.second::<false>(&places),
+            None => self.second::<true>(&places),
             Some(certainty) => self.weighted_second(&places, certainty),
         };
         let zero = [0.0; BLOCK];
@@ -96,7 +104,7 @@ impl ExpansionPair<'_> {
     #[inline(always)]
     fn places(&self, x0: usize, y: usize, u: &Block, v: &Block) -> Places {
         let zero = [0.0; BLOCK];
-        let mut places = Places { first: [0; BLOCK], weights: [zero; 4], inside: zero };
+        let mut places = Places { first: [0; BLOCK], weights: [zero; 4], fraction: [zero; 2], inside: zero };
         let (right, bottom) = ((self.width - 1) as f32, (self.height - 1) as f32);
         let (stride, x0, y) = (self.stride as u32, x0 as u32, y as f32);
         for i in 0..BLOCK {
@@ -112,6 +120,7 @@ impl ExpansionPair<'_> {
             places.weights[1][i] = fx * (1.0 - fy);
             places.weights[2][i] = (1.0 - fx) * fy;
             places.weights[3][i] = fx * fy;
+            (places.fraction[0][i], places.fraction[1][i]) = (fx, fy);
             places.inside[i] = if inside { 1.0 } else { 0.0 };
         }
         places
@@ -128,8 +137,12 @@ impl ExpansionPair<'_> {
 
     /// The second frame's expansions there. They have no meaning at places without four pixels around them.
     #[inline(always)]
-    fn second(&self, places: &Places) -> ([[f32; 4]; BLOCK], Block, Block) {
-        let mut gathered = Gathered { quads: [[0.0; 4]; BLOCK], cross_terms: [[0.0; 4]; BLOCK] };
+    fn second<const CONTINUED: bool>(&self, places: &Places) -> ([[f32; 4]; BLOCK], Block, Block) {
+        let mut gathered = Gathered {
+            quads: [[0.0; 4]; BLOCK],
+            cross_terms: [[0.0; 4]; BLOCK],
+            continued: [[0.0; 2]; BLOCK],
+        };
         // All slices have the same length, so that one bounds check serves all of them.
         let (below, count) = self.neighbours();
         let (q, t) = (self.quad_1, self.cross_term_1);
@@ -143,12 +156,30 @@ impl ExpansionPair<'_> {
             let (q_a, q_b, q_c, q_d) = (q_a[first], q_b[first], q_c[first], q_d[first]);
             gathered.quads[i] = std::array::from_fn(|n| a * q_a[n] + b * q_b[n] + c * q_c[n] + d * q_d[n]);
             gathered.cross_terms[i] = [t_a[first], t_b[first], t_c[first], t_d[first]];
+            if CONTINUED {
+                // From each of the four pixels to the place, along x and along y.
+                let [fx, fy] = places.fraction.each_ref().map(|fraction| fraction[i]);
+                let (gx, gy) = (fx - 1.0, fy - 1.0);
+                gathered.continued[i] = [
+                    (a * q_a[2] + c * q_c[2]) * fx + (b * q_b[2] + d * q_d[2]) * gx,
+                    (a * q_a[3] + b * q_b[3]) * fy + (c * q_c[3] + d * q_d[3]) * gy,
+                ];
+            }
         }
         let mut cross_terms = [0.0; BLOCK];
         for i in 0..BLOCK {
             let [a, b, c, d] = places.weights.each_ref().map(|weights| weights[i]);
             let [t_a, t_b, t_c, t_d] = gathered.cross_terms[i];
             cross_terms[i] = a * t_a + b * t_b + c * t_c + d * t_d;
+            if CONTINUED {
+                let [fx, fy] = places.fraction.each_ref().map(|fraction| fraction[i]);
+                let (gx, gy) = (fx - 1.0, fy - 1.0);
+                let along_x = (a * t_a + b * t_b) * fy + (c * t_c + d * t_d) * gy;
+                let along_y = (a * t_a + c * t_c) * fx + (b * t_b + d * t_d) * gx;
+                let [xx, yy] = gathered.continued[i];
+                gathered.quads[i][0] += self.kappa * (2.0 * xx + along_x);
+                gathered.quads[i][1] += self.kappa * (2.0 * yy + along_y);
+            }
         }
         (gathered.quads, cross_terms, [1.0; BLOCK])
     }
@@ -158,7 +189,8 @@ impl ExpansionPair<'_> {
     #[inline(always)]
     fn weighted_second(&self, places: &Places, certainty: &[f32]) -> ([[f32; 4]; BLOCK], Block, Block) {
         let mut sums = [0.0; BLOCK];
-        let mut weighted = Places { first: places.first, weights: places.weights, inside: places.inside };
+        let Places { first, weights, fraction, inside } = *places;
+        let mut weighted = Places { first, weights, fraction, inside };
         let (below, count) = self.neighbours();
         let corners = [0, 1, below, below + 1].map(|offset| &certainty[offset..][..count]);
         for i in 0..BLOCK {
@@ -169,7 +201,10 @@ impl ExpansionPair<'_> {
             let [a, b, c, d] = weighted.weights.each_ref().map(|weights| weights[i]);
             sums[i] = a + b + c + d;
         }
-        let (mut quads, mut cross_terms, _) = self.second(&weighted);
+        let (mut quads, mut cross_terms, _) = match self.kappa == 0.0 {
+            true => self.second::<false>(&weighted),
+            false => self.second::<true>(&weighted),
+        };
         for i in 0..BLOCK {
             quads[i] = quads[i].map(|value| value / sums[i]);
             cross_terms[i] /= sums[i];
@@ -242,11 +277,50 @@ impl ExpansionPair<'_> {
         flow: &[f32],
         f: impl Fn(&Model, &Stretch<'_>) -> [Block; 5] + Sync,
     ) {
+        self.each_block_into(
+            [out, &mut []],
+            5,
+            flow,
+            #[inline(always)]
+            |model, stretch| {
+                let mut channels = f(model, stretch);
+                zero_unknown(&mut channels);
+                channels
+            },
+        );
+    }
+
+    /// Fills two planes, which `f` computes from a block's model.
+    #[inline(always)]
+    pub(super) fn each_block_of_two(
+        &self,
+        first: &mut [f32],
+        second: &mut [f32],
+        flow: &[f32],
+        f: impl Fn(&Model, &Stretch<'_>) -> [Block; 2] + Sync,
+    ) {
+        self.each_block_into([first, second], 1, flow, f);
+    }
+
+    /// Fills an image of so many channels and, with the channels that are left, a plane each of a second image.
+    #[inline(always)]
+    fn each_block_into<const N: usize>(
+        &self,
+        [out, second]: [&mut [f32]; 2],
+        channels_of_first: usize,
+        flow: &[f32],
+        f: impl Fn(&Model, &Stretch<'_>) -> [Block; N] + Sync,
+    ) {
         let stride = self.stride;
-        let split = Split { scratch: stride.next_multiple_of(BLOCK), ..Split::rows_of(5 * stride) };
+        let row = channels_of_first * stride;
+        let split = Split {
+            second_row: N * stride - row,
+            scratch: stride.next_multiple_of(BLOCK),
+            ..Split::rows_of(row)
+        };
         bands(
             out,
-            &mut [],
+            second,
             split,
             #[inline(always)]
             |band| {
@@ -255,8 +329,10 @@ impl ExpansionPair<'_> {
                 }
                 let mut room = [[0.0; BLOCK]; 3];
                 let mut room_of_quads = [[0.0; 4]; BLOCK];
-                for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
+                let mut second_rows = band.second.chunks_exact_mut((N * stride - row).max(1));
+                for (i, rows) in band.out.chunks_exact_mut(row).enumerate() {
                     let y = band.y0 + i;
+                    let mut second_rows = second_rows.next();
                     let weight_y = border_weight(y, self.height);
                     let (u, v) = flow[2 * y * stride..][..2 * stride].split_at(stride);
                     for (block, weights_x) in band.scratch.as_chunks().0.iter().enumerate() {
@@ -267,10 +343,13 @@ impl ExpansionPair<'_> {
                         let quad_0 = whole_block(self.quad_0, at, count, &mut room_of_quads);
                         let cross_term_0 = whole_block(self.cross_term_0, at, count, room_of_cross_terms);
                         let model = self.model(x0, y, &Ours { u, v, quad_0, cross_term_0 });
-                        let mut channels = f(&model, &Stretch { at, count, u, v, weights_x, weight_y });
-                        zero_unknown(&mut channels);
+                        let channels = f(&model, &Stretch { at, count, u, v, weights_x, weight_y });
                         for (channel, values) in channels.iter().enumerate() {
-                            let out = &mut rows[channel * stride + x0..][..count];
+                            let rows = match (channel.checked_sub(channels_of_first), &mut second_rows) {
+                                (Some(channel), Some(rows)) => &mut rows[channel * stride..][..stride],
+                                _ => &mut rows[channel * stride..][..stride],
+                            };
+                            let out = &mut rows[x0..][..count];
                             match out.as_mut_array() {
                                 Some(out) => *out = *values,
                                 None => out.copy_from_slice(&values[..count]),

@@ -39,11 +39,28 @@ pub(crate) struct Split {
     pub(crate) scratch: usize,
     /// The cost of a value relative to a usual one; 0 stands for 1.
     pub(crate) dearer: usize,
+    /// Bands of fewer rows are not split any more; 0 stands for 16.
+    pub(crate) fewest_rows: usize,
 }
 
 impl Split {
     pub(crate) fn rows_of(row: usize) -> Self {
         Self { row, ..Self::default() }
+    }
+
+    /// Whether a band of this many rows stays whole.
+    fn is_whole(&self, rows: usize) -> bool {
+        let fewest = if self.fewest_rows == 0 { 16 } else { self.fewest_rows };
+        rows < fewest || rows * self.row * self.dearer.max(1) < SMALLEST_SHARE
+    }
+
+    /// The most rows that a band of an image of `height` rows has.
+    pub(crate) fn most_rows(&self, height: usize) -> usize {
+        let mut rows = height;
+        while !self.is_whole(rows) {
+            rows -= rows / 2;
+        }
+        rows
     }
 }
 
@@ -62,7 +79,7 @@ pub(crate) fn bands_of_three<F: Fn(Band<'_>) + Sync>(outputs: [&mut [f32]; 3], s
 
 fn halve<F: Fn(Band<'_>) + Sync>(y0: usize, [out, second, third]: [&mut [f32]; 3], split: Split, f: &F) {
     let rows = out.len() / split.row;
-    if rows < 16 || out.len() * split.dearer.max(1) < SMALLEST_SHARE {
+    if split.is_whole(rows) {
         return vectorised(y0, [out, second, third], split.scratch, f);
     }
     let half = rows / 2;

@@ -40,15 +40,15 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], flow: &mut [f32]) {
     average(p, columns, window, flow, 2, #[inline(always)] |_, averages, rows| {
         let (u, v) = rows.split_at_mut(stride);
         for x in 0..width {
-            [u[x], v[x]] = displacement(averages.map(|average| average[x]));
+            [u[x], v[x]] = displacement(averages.map(|average| average[x]), REGULAR);
         }
     });
 }
 
-/// The displacement that solves a pixel's equations, by Cramer's rule.
+/// The displacement that solves a pixel's equations, by Cramer's rule with `regular` added to the determinant.
 #[inline(always)]
-pub(super) fn displacement([g_xx, g_xy, g_yy, h_x, h_y]: [f32; 5]) -> [f32; 2] {
-    let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + REGULAR);
+pub(super) fn displacement([g_xx, g_xy, g_yy, h_x, h_y]: [f32; 5], regular: f32) -> [f32; 2] {
+    let scale = 1.0 / (g_xx * g_yy - g_xy * g_xy + regular);
     [known((g_yy * h_x - g_xy * h_y) * scale), known((g_xx * h_y - g_xy * h_x) * scale)]
 }
 
@@ -112,7 +112,12 @@ fn known(d: f32) -> f32 {
 /// the bound grows with `S_xx S_yy / D`, as the ratio of the equations' eigenvalues does. Where D is within its
 /// roundings of zero, or d within its own of what counts as no motion, the sides may have any two displacements.
 /// Averages are those of the reference, and what follows from them is computed in `f64`.
-pub(super) fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut [f32]) {
+fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut [f32]) {
+    rounding_of(p, REGULAR, columns, window, bound);
+}
+
+/// The same for another number in place of 10⁻³.
+pub(super) fn rounding_of(p: &Params, regular: f32, columns: &[f32], window: &[f32], bound: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let of_row = 5 * stride;
     let averaged = |columns: &[f32]| {
@@ -130,18 +135,18 @@ pub(super) fn rounding(p: &Params, columns: &[f32], window: &[f32], bound: &mut 
     for (y, rows) in bound.chunks_exact_mut(2 * stride).enumerate() {
         for x in 0..stride {
             let at = |values: &[f32]| [0, 1, 2, 3, 4].map(|i| f64::from(values[y * of_row + i * stride + x]));
-            [rows[x], rows[stride + x]] = apart(at(&sums), at(&sizes), terms);
+            [rows[x], rows[stride + x]] = apart(at(&sums), at(&sizes), terms, f64::from(regular));
         }
     }
 }
 
 /// The bounds of u and v, from the averages, those of the magnitudes, and how many terms they have: see [`rounding`].
-fn apart(averages: [f64; 5], sizes: [f64; 5], terms: f64) -> [f32; 2] {
+fn apart(averages: [f64; 5], sizes: [f64; 5], terms: f64, regular: f64) -> [f32; 2] {
     const EPSILON: f64 = f32::EPSILON as f64;
     let [g_xx, g_xy, g_yy, h_x, h_y] = averages;
     let [s_xx, s_xy, s_yy, s_hx, s_hy] = sizes;
-    let determinant = g_xx * g_yy - g_xy * g_xy + f64::from(REGULAR);
-    let of_determinant = (2.0 * terms + 3.0) * EPSILON * (s_xx * s_yy + s_xy * s_xy + f64::from(REGULAR));
+    let determinant = g_xx * g_yy - g_xy * g_xy + regular;
+    let of_determinant = (2.0 * terms + 3.0) * EPSILON * (s_xx * s_yy + s_xy * s_xy + regular);
     let least = determinant - of_determinant;
     let each = [
         (g_yy * h_x - g_xy * h_y, s_yy * s_hx + s_xy * s_hy),

@@ -4,12 +4,30 @@
 //! the flow so far is not carried: a step of Newton's method for each pixel, as that of Lucas and Kanade is (Bouguet,
 //! Pyramidal implementation of the Lucas Kanade feature tracker, 2001).
 
-use super::solve::{self, average, displacement};
+use super::solve::{self, average, displacement, rounding_of};
 use super::test_inputs::{Fill, planes};
 use crate::frame::Size;
-use crate::kernel::{Case, Tolerance, kernel};
+use crate::kernel::{Case, Tolerance, kernel, params};
 
-pub use super::solve::Params;
+params! {
+    /// Shape of the image and of the window.
+    struct Params {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The window has `2 radius + 1` columns.
+        radius: u32,
+        /// What is added to the determinant to keep it off zero, above 0.
+        regular: f32,
+    }
+}
+
+impl Params {
+    fn window(&self) -> solve::Params {
+        solve::Params { width: self.width, height: self.height, radius: self.radius }
+    }
+}
 
 kernel!(
     "solve_increment" + ["image", "window", "average", "solution"],
@@ -25,11 +43,11 @@ kernel!(
 
 fn reference(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], flow: &mut [f32]) {
     let stride = Size::new(p.width, p.height).stride();
-    average(p, columns, window, flow, 2, #[inline(always)] |y, averages, rows| {
+    average(&p.window(), columns, window, flow, 2, #[inline(always)] |y, averages, rows| {
         let (u, v) = rows.split_at_mut(stride);
         let (u_0, v_0) = so_far[2 * y * stride..][..2 * stride].split_at(stride);
         for x in 0..p.width as usize {
-            let [d_x, d_y] = displacement(averages.map(|average| average[x]));
+            let [d_x, d_y] = displacement(averages.map(|average| average[x]), p.regular);
             u[x] = u_0[x] + d_x;
             v[x] = v_0[x] + d_y;
         }
@@ -40,16 +58,21 @@ fn reference(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], flow: 
 fn rounding(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], bound: &mut [f32]) {
     let mut flow = vec![0.0; bound.len()];
     reference(p, columns, window, so_far, &mut flow);
-    solve::rounding(p, columns, window, bound);
+    rounding_of(&p.window(), p.regular, columns, window, bound);
     for (bound, flow) in bound.iter_mut().zip(flow) {
         *bound += f32::EPSILON * (flow.abs() + *bound);
     }
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let mut cases = solve::cases(size);
-    for case in &mut cases {
-        case.inputs.push(planes(size, 2, Fill::Textured, [-6.0, 6.0], 9));
-    }
-    cases
+    let all = [1e-3, 1e-6].map(|regular| {
+        let cases = solve::cases(size);
+        cases.into_iter().map(move |mut case| {
+            let solve::Params { width, height, radius } = bytemuck::pod_read_unaligned(&case.params);
+            case.params = bytemuck::bytes_of(&Params { width, height, radius, regular }).to_vec();
+            case.inputs.push(planes(size, 2, Fill::Textured, [-6.0, 6.0], 9));
+            Case { name: format!("{}, {regular:e} in the determinant", case.name), ..case }
+        })
+    });
+    all.into_iter().flatten().collect()
 }

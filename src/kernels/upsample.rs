@@ -1,4 +1,4 @@
-//! Samples a coarser level's flow bilinearly at this level's pixels and scales it to their size.
+//! Samples a coarser level's flow, or another image of some channels, bilinearly at this level's pixels and scales it.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::tables;
@@ -17,8 +17,10 @@ params! {
         in_width: u32,
         /// Rows of the coarser level.
         in_height: u32,
-        /// The factor of the displacements.
+        /// The factor of the values: that of displacements is the ratio of the levels' sizes.
         scale: f32,
+        /// Channels, 1 to 8: 2 for a flow.
+        channels: u32,
     }
 }
 
@@ -36,15 +38,16 @@ kernel!(
 fn reference(p: &Params, coarse: &[f32], place_x: &[f32], place_y: &[f32], flow: &mut [f32]) {
     let (width, _, stride) = dimensions(p.width, p.height);
     let (in_width, in_height, in_stride) = dimensions(p.in_width, p.in_height);
-    let split = Split { scratch: in_stride, ..Split::rows_of(2 * stride) };
+    let channels = p.channels as usize;
+    let split = Split { scratch: in_stride, ..Split::rows_of(channels * stride) };
     bands(flow, &mut [], split, #[inline(always)] |band| {
-        for (i, rows) in band.out.chunks_exact_mut(2 * stride).enumerate() {
+        for (i, rows) in band.out.chunks_exact_mut(channels * stride).enumerate() {
             let y = band.y0 + i;
             let (above, fraction) = (place_y[2 * y] as usize, place_y[2 * y + 1]);
             let below = (above + 1).min(in_height - 1);
             for (channel, out) in rows.chunks_exact_mut(stride).enumerate() {
-                let above = &coarse[(2 * above + channel) * in_stride..][..in_stride];
-                let below = &coarse[(2 * below + channel) * in_stride..][..in_stride];
+                let above = &coarse[(channels * above + channel) * in_stride..][..in_stride];
+                let below = &coarse[(channels * below + channel) * in_stride..][..in_stride];
                 for ((mixed, above), below) in band.scratch.iter_mut().zip(above).zip(below) {
                     *mixed = mix(*above, *below, fraction);
                 }
@@ -66,18 +69,24 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
 
 fn cases(size: Size) -> Vec<Case> {
     let coarse = Size::new(size.width.div_ceil(2), size.height.div_ceil(2));
-    let params = Params {
-        width: size.width,
-        height: size.height,
-        in_width: coarse.width,
-        in_height: coarse.height,
-        scale: 2.0,
-    };
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[2 * size.stride()], size, |fill| {
-        vec![
-            planes(coarse, 2, fill, [-40.0, 40.0], 5),
-            tables::place(coarse.width, size.width),
-            tables::place(coarse.height, size.height),
-        ]
-    })
+    let all = [(2, 2.0), (4, 1.0)].map(|(channels, scale)| {
+        let params = Params {
+            width: size.width,
+            height: size.height,
+            in_width: coarse.width,
+            in_height: coarse.height,
+            scale,
+            channels,
+        };
+        let channels = channels as usize;
+        let cases = each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[channels * size.stride()], size, |fill| {
+            vec![
+                planes(coarse, channels, fill, [-40.0, 40.0], 5),
+                tables::place(coarse.width, size.width),
+                tables::place(coarse.height, size.height),
+            ]
+        });
+        cases.into_iter().map(move |case| Case { name: format!("{}, {channels} channels", case.name), ..case })
+    });
+    all.into_iter().flatten().collect()
 }

@@ -51,7 +51,7 @@ fn reference(
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let certainty_1 = Some(certainty_1);
     let pair =
-        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride };
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa: 0.0 };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
         let mut channels = equations_of(model, stretch, p);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {

@@ -105,15 +105,15 @@ fn constants_are_resolved_without_a_gpu() {
     let wide = Variant { name: "wide", constants: &[("WORKGROUP_X", 64.0)] };
     assert_eq!(reflect_variant(&window_y::KERNEL, &Variant::DEFAULT).unwrap().workgroup, [32, 1]);
     let shape = reflect_variant(&window_y::KERNEL, &wide).unwrap();
-    assert_eq!((shape.workgroup, shape.span, shape.side_by_side), ([64, 1], [4, 8], 5));
+    assert_eq!((shape.workgroup, shape.tile, shape.side_by_side), ([64, 1], [256, 8], 5));
 
     // SPAN in two overrides, one of them given by an expression.
     let spans = "override SPAN_X = 4u; override ROWS = 4u; override SPAN_Y = 2u * ROWS;";
     let spans = mutant(&window_y::KERNEL, "const SPAN = vec2u(4u, 8u);", spans);
     let spans = mutant(&spans, "id.y * SPAN.y", "id.y * SPAN_Y + 0u * SPAN_X");
-    assert_eq!(reflect_variant(&spans, &Variant::DEFAULT).unwrap().span, [4, 8]);
+    assert_eq!(reflect_variant(&spans, &Variant::DEFAULT).unwrap().tile, [128, 8]);
     let rows = Variant { name: "rows", constants: &[("ROWS", 1.0)] };
-    assert_eq!(reflect_variant(&spans, &rows).unwrap().span, [4, 2]);
+    assert_eq!(reflect_variant(&spans, &rows).unwrap().tile, [128, 2]);
     // The bound of a loop may be an override, too.
     let steps = mutant(&window_y::KERNEL, "const MAX_STEPS = 257u;", "override MAX_STEPS = 257u;");
     reflect_variant(&steps, &Variant::DEFAULT).unwrap();

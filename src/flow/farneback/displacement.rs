@@ -1,8 +1,8 @@
 //! The steps of a pair of frames: on each level, coarse to fine, the equations, their average and their solution.
 
-use super::expansion::{Expansion, Expansions};
 use super::{Farneback, Outside, Update, Window};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
+use crate::flow::expansions::{Expansion, Expansions};
 use crate::flow::{Level, Wanted};
 use crate::kernels::{
     solve_increment, weighted_normal_equations, confidence, normal_equations, residual, solve, tables, window_y,
@@ -74,7 +74,7 @@ impl Displacement {
         flow: BufId,
     ) -> Vec<Step> {
         let pair = |k: usize| [expansions.levels[k][first], expansions.levels[k][second]];
-        let mut steps = self.coarse_to_fine.steps(self.iterations, given, flow, |steps, iteration| {
+        let mut steps = self.coarse_to_fine.steps(|_| self.iterations, given, flow, |steps, iteration| {
             self.iterate(steps, &iteration, pair(iteration.k));
         });
         if let Some(evidence) = &self.evidence {
@@ -130,12 +130,16 @@ impl Displacement {
             &[self.equations, self.window_y],
             &[(self.columns, five)],
         ));
-        let params = solve::Params { width, height, radius: self.radius };
+        let radius = self.radius;
         let flow = [(*flow, Shape::planar(size, 2))];
         let label = label.clone();
         steps.push(match self.adds {
-            false => Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow),
+            false => {
+                let params = solve::Params { width, height, radius };
+                Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow)
+            }
             true => {
+                let params = solve_increment::Params { width, height, radius, regular: 1e-3 };
                 Step::new(&solve_increment::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
             }
         });

@@ -1,13 +1,11 @@
 //! Pyramidal Farnebäck flow, with OpenCV's semantics to the last border pixel.
 
-mod normalized;
 mod displacement;
-mod expansion;
 mod parameters;
 
 use displacement::Displacement;
-use expansion::Expansions;
 
+use super::expansions::{Expanded, Expansions};
 use super::parameter::within;
 use super::{Estimator, Evidence, Stages, Wanted, levels};
 use crate::error::{Error, Result};
@@ -140,7 +138,13 @@ impl Estimator for Farneback {
     fn stages(&self, bufs: &mut Bufs, size: Size, wanted: Wanted) -> Box<dyn Stages> {
         let levels = levels(size, self.pyr_scale, self.levels);
         Box::new(FarnebackStages {
-            expansions: Expansions::new(bufs, self, size, &levels, wanted.certainty),
+            expansions: Expansions::new(
+                bufs,
+                Expanded { poly_n: self.poly_n, poly_sigma: self.poly_sigma, ..Expanded::default() },
+                size,
+                &levels,
+                wanted.certainty,
+            ),
             displacement: Displacement::new(bufs, self, &levels, wanted),
         })
     }

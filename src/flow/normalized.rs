@@ -1,6 +1,6 @@
 //! The expansion of a frame whose pixels have a certainty, by normalised convolution.
 
-use crate::flow::Level;
+use super::Level;
 use crate::frame::Size;
 use crate::kernels::{normalized_expansion_x, normalized_expansion_y, premultiply};
 use crate::plan::{BufId, Bufs, Shape, Step};
@@ -63,7 +63,7 @@ impl Normalized {
         k: usize,
         size: Size,
         radius: u32,
-        [image, weights_y, weights_x]: [BufId; 3],
+        [image, level, weights_y, weights_x]: [BufId; 4],
         [quad, cross_term, certainty]: [BufId; 3],
     ) -> [Step; 2] {
         let plane = Shape::planar(size, 1);
@@ -72,7 +72,7 @@ impl Normalized {
                 &normalized_expansion_y::KERNEL,
                 format!("level {k}"),
                 normalized_expansion_y::Params { width: size.width, height: size.height, radius },
-                &[image, self.level, weights_y],
+                &[image, level, weights_y],
                 &[(self.moments, Shape::planar(size, 8))],
             ),
             Step::new(

@@ -1,9 +1,8 @@
 //! The steps of one frame alone: its pyramid, and the polynomial expansion of each level.
 
-use super::Farneback;
+use super::Level;
 use super::normalized::Normalized;
-use crate::flow::Level;
-use crate::flow::pyramid::Pyramid;
+use super::pyramid::Pyramid;
 use crate::frame::Size;
 use crate::kernels::tables::{self, Applicability};
 use crate::kernels::{expansion_x, expansion_y};
@@ -20,8 +19,32 @@ pub(super) struct Expansion {
     pub(super) certainty: Option<BufId>,
 }
 
+/// What of an image is expanded, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Expanded {
+    /// Radius of the neighbourhood in pixels.
+    pub(super) poly_n: u32,
+    /// Standard deviation of its Gaussian in pixels.
+    pub(super) poly_sigma: f64,
+    /// Whether the finest level is the image as it is; otherwise it is smoothed, as OpenCV does.
+    pub(super) unsmoothed: bool,
+    /// The finest levels that are left out.
+    pub(super) skip: usize,
+    /// The number of finest levels, from `skip` on, whose images are kept beside their expansions.
+    pub(super) kept_images: usize,
+}
+
+impl Default for Expanded {
+    fn default() -> Self {
+        Self { poly_n: 5, poly_sigma: 1.2, unsmoothed: false, skip: 0, kept_images: 0 }
+    }
+}
+
 /// The buffers of this part of the plan.
 pub(super) struct Expansions {
+    /// For each level, finest first, the kept images of both slots.
+    pub(super) images: Vec<Option<[BufId; 2]>>,
+    expanded: Expanded,
     /// For each level, finest first, the expansions in both slots.
     pub(super) levels: Vec<[Expansion; 2]>,
     /// The further buffers that a certainty needs.
@@ -39,8 +62,15 @@ pub(super) struct Expansions {
 }
 
 impl Expansions {
-    pub(super) fn new(bufs: &mut Bufs, config: &Farneback, size: Size, levels: &[Level], certainty: bool) -> Self {
-        let applicability = tables::applicability(config.poly_n, config.poly_sigma);
+    pub(super) fn new(
+        bufs: &mut Bufs,
+        expanded: Expanded,
+        size: Size,
+        levels: &[Level],
+        certainty: bool,
+    ) -> Self {
+        let Expanded { poly_n, poly_sigma, skip, kept_images, .. } = expanded;
+        let applicability = tables::applicability(poly_n, poly_sigma);
         let normalized = certainty.then(|| Normalized::new(bufs, size, levels));
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
             let frames = ["even frames", "odd frames"][slot];
@@ -51,24 +81,29 @@ impl Expansions {
                 certainty: normalized.as_ref().map(|normalized| normalized.expansion(k, slot)),
             }
         };
+        let images = levels.iter().enumerate().map(|(k, level)| {
+            let image = |bufs: &mut Bufs, slot: &str| {
+                bufs.computed(format!("image, level {k}, {slot} frames"), Shape::planar(level.size, 1))
+            };
+            (skip..skip + kept_images).contains(&k).then(|| ["even", "odd"].map(|slot| image(bufs, slot)))
+        });
         Self {
+            images: images.collect(),
+            expanded,
             levels: levels
                 .iter()
                 .enumerate()
                 .map(|(k, level)| [0, 1].map(|slot| expansion(bufs, k, level, slot)))
                 .collect(),
             size,
-            radius: config.poly_n,
+            radius: poly_n,
             weights_y: bufs.constant(
                 "applicability, columns",
-                tables::applicability_from(&applicability.weights, config.poly_n as usize),
+                tables::applicability_from(&applicability.weights, poly_n as usize),
             ),
             weights_x: bufs.constant(
                 "applicability, rows",
-                tables::applicability_from(
-                    &applicability.weights,
-                    (config.poly_n as usize).next_multiple_of(4),
-                ),
+                tables::applicability_from(&applicability.weights, (poly_n as usize).next_multiple_of(4)),
             ),
             applicability,
             image: bufs.computed("level's image", Shape::planar(size, 1)),
@@ -89,20 +124,30 @@ impl Expansions {
             }
             _ => vec![[gray, self.image]],
         };
-        for (k, size) in self.sizes.iter().enumerate() {
-            for &[full, image] in &pictures {
-                self.pyramid.reduce(&mut steps, k, full, image);
+        for (k, size) in self.sizes.iter().enumerate().skip(self.expanded.skip) {
+            let mut images = [self.image; 2];
+            for (i, &[full, image]) in pictures.iter().enumerate() {
+                let kept = if i == 0 { self.images[k].map(|images| images[slot]) } else { None };
+                if k > 0 || !self.expanded.unsmoothed {
+                    images[i] = kept.unwrap_or(image);
+                    self.pyramid.reduce(&mut steps, k, full, images[i]);
+                } else {
+                    images[i] = full;
+                    if let Some(kept) = kept {
+                        self.pyramid.reduce(&mut steps, k, full, kept);
+                    }
+                }
             }
-            self.expand(&mut steps, k, *size, slot);
+            self.expand(&mut steps, k, *size, slot, images);
         }
         steps
     }
 
-    /// The polynomial expansion of a level's image.
-    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize) {
+    /// The polynomial expansion of a level's image, the first of `images`; the second is its certainty, if frames have one.
+    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize, images: [BufId; 2]) {
         let Expansion { quad, cross_term, certainty } = self.levels[k][slot];
         if let (Some(normalized), Some(certainty)) = (&self.normalized, certainty) {
-            let inputs = [self.image, self.weights_y, self.weights_x];
+            let inputs = [images[0], images[1], self.weights_y, self.weights_x];
             steps.extend(normalized.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));
         }
         let Some(moments) = self.moments else { return };
@@ -110,7 +155,7 @@ impl Expansions {
             &expansion_y::KERNEL,
             format!("level {k}"),
             expansion_y::Params { width: size.width, height: size.height, radius: self.radius },
-            &[self.image, self.weights_y],
+            &[images[0], self.weights_y],
             &[(moments, Shape::planar(size, 3))],
         ));
         steps.push(Step::new(

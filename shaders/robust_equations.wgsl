@@ -1,0 +1,51 @@
+// Each pixel's equations for the increment of its displacement, each divided by its own slope and weighted by a robust
+// function of how far they are from holding.
+// Farnebäck 2003, section 3; Zimmer, Bruhn and Weickert 2011, section 3.3; Brox, Bruhn, Papenberg and Weickert 2004.
+
+struct Params {
+    width: u32,
+    height: u32,
+    kappa: f32,  // share of its Hessian by which an expansion is continued to a place between pixels
+    floor: f32,  // added to the squared slope that divides an equation
+    robust: f32, // square of the residual up to which the weight is nearly constant; 0 for equal weights
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> quad_0: array<vec4f>;
+@group(0) @binding(2) var<storage, read> cross_term_0: array<f32>;
+@group(0) @binding(3) var<storage, read> quad_1: array<vec4f>;
+@group(0) @binding(4) var<storage, read> cross_term_1: array<f32>;
+@group(0) @binding(5) var<storage, read> flow: array<f32>;
+@group(0) @binding(6) var<storage, read_write> equations: array<f32>; // channels: G_xx, G_xy, G_yy, q_x, q_y
+
+const SPAN = vec2u(1u, 1u);
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let stride = (params.width + 3u) / 4u * 4u;
+    let x = min(id.x, params.width - 1u);
+    let y = min(id.y, params.height - 1u);
+    let i = y * stride + x;
+    let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
+    let second = continued_second_at(vec2f(f32(x), f32(y)) + d, params.kappa);
+    let m = model(Expansion(quad_0[i], cross_term_0[i]), second, vec2f());
+    let h = 2.0 * m.a;
+    let r = 2.0 * m.delta_b;
+    let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
+    let s = n.x * (r.x * r.x) + n.y * (r.y * r.y);
+    let robust = select(1.0, inverseSqrt(s + params.robust), params.robust > 0.0);
+    let w = select(0.0, robust, second.inside) * n;
+    let g = w.x * h.x * h.xy + w.y * h.y * h.yz;
+    let g_yy = w.x * h.y * h.y + w.y * h.z * h.z;
+    let q = w.x * r.x * h.xy + w.y * r.y * h.yz;
+    // Overflow and NaN become zeros, so that they do not spread.
+    let known = abs(g.x) + abs(g.y) + abs(g_yy) + abs(q.x) + abs(q.y) <= 1e30;
+    if id.x < stride && id.y < params.height {
+        let at = 5u * id.y * stride + id.x;
+        equations[at] = select(0.0, g.x, known);
+        equations[at + stride] = select(0.0, g.y, known);
+        equations[at + 2u * stride] = select(0.0, g_yy, known);
+        equations[at + 3u * stride] = select(0.0, q.x, known);
+        equations[at + 4u * stride] = select(0.0, q.y, known);
+    }
+}
