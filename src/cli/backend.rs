@@ -11,9 +11,8 @@ use crate::gpu::{Gpu, GpuOptions};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Backend")]
 pub(super) struct BackendArgs {
-    /// Where to compute [default: a real GPU if there is one, else the CPU]. The choice is named on standard error,
-    /// unless
-    /// --quiet is given. `gpu` takes any adapter, including software ones such as lavapipe
+    /// Where to compute [default: a real GPU if there is one, else the CPU]. The choice is named on standard error, unless
+    /// a command's --quiet is given. `gpu` takes any adapter, including software ones such as lavapipe
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendArg>,
     /// Part of the name of the GPU adapter to use (see `viewsphere devices`)

@@ -2,6 +2,7 @@
 //! generated from the estimators' own lists.
 
 use clap::builder::PossibleValue;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use crate::error::{Error, Result};
@@ -15,6 +16,8 @@ const DEFAULT_PRESET: &str = "default";
 pub(super) struct FlowArgs {
     algorithm: String,
     preset: String,
+    /// Whether the algorithm or the preset was given on the command line.
+    is_chosen: bool,
     /// The names and values of the parameters given.
     parameters: Vec<(&'static str, String)>,
 }
@@ -31,24 +34,30 @@ impl FlowArgs {
     /// # Errors
     /// [`Error::Parameter`] for a preset or a parameter that the algorithm does not have, and for values out of range.
     pub(super) fn algorithm(&self) -> Result<Algorithm> {
-        let mut algorithm = Algorithm::named(&self.algorithm, &self.preset)?;
+        self.with_parameters(Algorithm::named(&self.algorithm, &self.preset)?)
+    }
+
+    /// The same for a command whose default is `own`: its parameters, unless an algorithm or a preset is given.
+    ///
+    /// # Errors
+    /// As [`FlowArgs::algorithm`].
+    pub(super) fn algorithm_or(&self, own: &Algorithm) -> Result<Algorithm> {
+        if self.is_chosen { self.algorithm() } else { self.with_parameters(own.clone()) }
+    }
+
+    fn with_parameters(&self, mut algorithm: Algorithm) -> Result<Algorithm> {
         for (name, value) in &self.parameters {
             if algorithm.get(name).is_none() {
                 let names: Vec<String> =
                     algorithm.parameters().iter().map(|parameter| flag(parameter.name)).collect();
                 let found = format_args!("--{}", flag(name));
-                let expected = format_args!("one of --{}", names.join(", --"));
-                return Err(Error::parameter(self.algorithm_parameter(), found, expected));
+                let expected = format_args!("one of {}'s: --{}", algorithm.name(), names.join(", --"));
+                return Err(Error::parameter("flow parameter", found, expected));
             }
             algorithm.set(name, value)?;
         }
         algorithm.validate()?;
         Ok(algorithm)
-    }
-
-    fn algorithm_parameter(&self) -> &'static str {
-        let known = Algorithm::ALL.iter().find(|(name, _)| *name == self.algorithm);
-        known.map_or("parameter of the algorithm", |(name, _)| name)
     }
 }
 
@@ -56,7 +65,9 @@ impl FromArgMatches for FlowArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let text = |id: &str| matches.get_one::<String>(id).cloned();
         let given = |shared: Shared| text(shared.parameter.name).map(|value| (shared.parameter.name, value));
+        let is_given = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
         Ok(Self {
+            is_chosen: is_given("algorithm") || is_given("preset"),
             algorithm: text("algorithm").unwrap_or_default(),
             preset: text("preset").unwrap_or_default(),
             parameters: shared().into_iter().filter_map(given).collect(),

@@ -44,7 +44,7 @@ const INTERRUPTED: i32 = 130;
 Examples:
   viewsphere demo                                    flow, time to contact and steering on one page
   viewsphere flow a.png b.png -o flow.flo            the flow between two images
-  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere flow - -o flows/
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be hit, where and when
   viewsphere simulate --world city --seed 3 -o set/    a simulated flight with exact ground truth
   viewsphere undistort --camera cam.yaml in.jpg -o out.png

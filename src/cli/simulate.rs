@@ -44,7 +44,7 @@ Examples:
   viewsphere simulate --world corridor --seconds 3 --truth divergence,nearness --pictures -o set/
   viewsphere flow 'set/frames/%06d.png' -o estimate/ && viewsphere eval --truth set/flow/000010.flo estimate/000010.flo
   viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
-    --gyro set/gyro.csv --camera-from-gyro frd")]
+    --gyro set/gyro.csv --camera-from-gyro frd --heading turning")]
 pub(super) struct Simulate {
     /// World, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
     /// dead-end, wires

@@ -60,10 +60,10 @@ macro_rules! estimators {
                 $(if name == <$Type>::NAME {
                     return match <$Type>::preset(preset) {
                         Some(parameters) => Ok(Self::$Type(parameters)),
-                        None => Err(unknown("preset", preset, <$Type>::PRESETS)),
+                        None => Err(unknown("preset", format_args!("{preset:?} with {name}"), <$Type>::PRESETS)),
                     };
                 })*
-                Err(unknown("algorithm", name, Self::ALL))
+                Err(unknown("algorithm", format_args!("{name:?}"), Self::ALL))
             }
 
             /// The method's name.
@@ -130,7 +130,7 @@ impl Default for Algorithm {
     }
 }
 
-fn unknown(what: &'static str, found: &str, known: &[Choice]) -> Error {
+fn unknown(what: &'static str, found: impl std::fmt::Display, known: &[Choice]) -> Error {
     let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    Error::parameter(what, format_args!("{found:?}"), names.join(", "))
+    Error::parameter(what, found, names.join(", "))
 }

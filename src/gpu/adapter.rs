@@ -113,7 +113,7 @@ pub(super) async fn choose(options: &GpuOptions) -> Result<Adapter> {
     let best = found.swap_remove(0);
     if rank(&best) == 4 && !options.allow_software {
         return fail(format!(
-            "only adapters that compute on the CPU are there ({}); name one to use it, or use the CPU backend",
+            "only adapters that compute on the CPU are there ({}); name one to use it",
             names.join("; ")
         ));
     }

@@ -5,7 +5,7 @@
 //! unit sphere is `∂ẋ/∂x + ∂ẏ/∂y − 3 (x ẋ + y ẏ) / (1 + x² + y²)` in coordinates of the pinhole's plane. Its error is
 //! of second order in the window's width. It is unknown where half of the window's cells are missing.
 //!
-//! ***Nearness rate** N, per frame: the inverse of the time to contact along the bearing in frames. With the direction
+//! **Nearness rate** N, per frame: the inverse of the time to contact along the bearing in frames. With the direction
 //! of motion v̂ the rate is `N g` with `g = √(1 + x² + y²) (v̂_z (x, y) − (v̂_x, v̂_y))`. Two estimates are blended by
 //! their inverse variances: the ratio of the flow to g, which is accurate far from v̂; and the ratio of the flow's
 //! growth across the window to that of g, which is accurate near v̂, where neither v̂'s error nor the surface's slant

@@ -159,7 +159,7 @@ impl Campaign {
         self.backend.check()?;
         let cores = || std::thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN);
         let at_a_time = self.jobs.unwrap_or_else(cores);
-        let plan = self.plan();
+        let plan = self.plan()?;
         let backend = match self.sensors.contains(&Sensor::Images) {
             true => self.backend.open()?,
             false => Backend::Cpu,
@@ -199,9 +199,9 @@ impl Campaign {
         finish(&results, &self.output, self.json)
     }
 
-    fn plan(&self) -> Plan {
-        Plan {
-            base: self.setup.config(),
+    fn plan(&self) -> Result<Plan> {
+        Ok(Plan {
+            base: self.setup.config()?,
             worlds: self.worlds.clone(),
             sensors: self.sensors.clone(),
             policies: self.policies.clone(),
@@ -211,7 +211,7 @@ impl Campaign {
             latencies_frames: self.latencies.clone(),
             faults: self.faults.clone(),
             seeds: self.seeds.0.clone(),
-        }
+        })
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn text(report: &Report, steps: bool) -> String {
     let none = || "none".to_owned();
     text += &format!(
         "\nflow, computed independently: max {:.2e} px, 99.9 % within {:.2e} px, mean {:.2e} px\n\
-         first step with any difference: {}\nfirst step beyond its bound, errors accumulating: {}\n{}\n",
+         first step with any difference: {}\nfirst step beyond its bound when errors accumulate, which is no failure: {}\n{}\n",
         report.flow.max,
         report.flow.p999,
         report.flow.mean,

@@ -117,6 +117,7 @@ impl Demo {
         let mut config = FlightConfig::default();
         // The flow is read back for the page only.
         config.pipeline.read_flow = true;
+        config.pipeline.algorithm = self.flow.algorithm_or(&config.pipeline.algorithm)?;
         input::folder(&self.output)?;
         self.spare()?;
         let backend = self.backend.open_for_shaders(self.quiet)?;

@@ -34,7 +34,7 @@ Examples:
   viewsphere flow a.png b.png -o - > flow.flo
   viewsphere flow 'frames/%04d.png' -o flows/ --color colours/ --warm-start
   viewsphere flow video.y4m -o flows/ --format kitti --backend gpu
-  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere flow - -o flows/
+  ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere flow - -o flows/
   ffmpeg -i in.mp4 -f rawvideo -pix_fmt gray - | viewsphere flow - --raw 640x480 -o flows/")]
 pub(super) struct Flow {
     /// Two images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard

@@ -135,7 +135,7 @@ pub(super) struct Fly {
 
 impl Fly {
     pub(super) fn run(&self) -> Result<Outcome> {
-        let config = self.config();
+        let config = self.config()?;
         config
             .validate()
             .map_err(|error| named_by_flags(error, &[("speed_m_s", "--speed"), ("size", "--size")]))?;
@@ -201,7 +201,7 @@ impl Fly {
         })
     }
 
-    fn config(&self) -> FlightConfig {
+    fn config(&self) -> Result<FlightConfig> {
         let mut config = FlightConfig {
             speed_m_s: self.speed,
             sensor: if self.truth_flow { Sensor::Flow } else { self.sensor },
@@ -210,11 +210,11 @@ impl Fly {
             latency_frames: self.latency_frames,
             faults: self.faults.clone(),
             measure: self.measure.measure,
-            ..self.setup.config()
+            ..self.setup.config()?
         };
         // The flow is read back for the video only.
         config.pipeline.read_flow = !self.no_video;
-        config
+        Ok(config)
     }
 }
 

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
+use crate::cli::flow_args::FlowArgs;
 use crate::error::{Error, Result};
 use crate::sim::flight::{Body, FlightConfig};
 use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors};
@@ -26,6 +27,8 @@ pub(in crate::cli) struct SetupArgs {
     /// ground: in wind, which makes the flight drift, steering is worse with them
     #[arg(long)]
     vanes: bool,
+    #[command(flatten)]
+    flow: FlowArgs,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -65,9 +68,13 @@ impl FromStr for Ned {
 }
 
 impl SetupArgs {
-    /// The base configuration of all flights.
-    pub(in crate::cli) fn config(&self) -> FlightConfig {
-        FlightConfig {
+    /// The base configuration of all flights. Their flow has parameters of its own unless an algorithm or a preset is
+    /// given.
+    ///
+    /// # Errors
+    /// As [`FlowArgs::algorithm`].
+    pub(in crate::cli) fn config(&self) -> Result<FlightConfig> {
+        let mut config = FlightConfig {
             body: match self.body {
                 BodyArg::Airframe => Body::default(),
                 BodyArg::Turn => Body::Turn(TurnParams::default()),
@@ -80,7 +87,9 @@ impl SetupArgs {
             },
             vanes: self.vanes.then(VaneErrors::default),
             ..FlightConfig::default()
-        }
+        };
+        config.pipeline.algorithm = self.flow.algorithm_or(&config.pipeline.algorithm)?;
+        Ok(config)
     }
 
     /// The options, as text.

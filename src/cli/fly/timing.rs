@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::quantile::{above_share, sorted};
+use crate::quantile::{nearest_rank, sorted};
 use crate::sim::flight::Cost;
 
 /// The frame interval at 30 Hz, milliseconds.
@@ -95,8 +95,8 @@ impl Spread {
 
     fn of(times: impl Iterator<Item = Duration>) -> Option<Self> {
         let sorted = sorted(times.map(milliseconds));
-        let at = |share| above_share(&sorted, share);
-        Some(Self { median: at(0.5)?, p99: at(0.99)? })
+        let at = |thousandths| nearest_rank(&sorted, thousandths);
+        Some(Self { median: at(500)?, p99: at(990)? })
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
         }
         let timing = costs.timing(None);
         assert_eq!((timing.frames, timing.over_33_ms), (100, 66));
-        assert_eq!((timing.sensor_ms.median, timing.total_ms.p99), (50.0, 99.0));
+        assert_eq!((timing.sensor_ms.median, timing.total_ms.p99), (49.0, 98.0));
         assert_eq!(timing.pipeline_ms.p99, 0.0);
         assert!(timing.latency_ms.is_none());
     }

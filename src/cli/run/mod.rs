@@ -9,7 +9,7 @@ mod video;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 
 use self::gyro::{GyroArgs, Numbers};
 use self::horizon::Horizon;
@@ -25,7 +25,7 @@ use crate::frame::{Image, Size};
 use crate::io::{self, frame_times};
 use crate::live::{FrameRate, FrameTimes, GyroFeed, Intake, Pace, TimedFrame, TimedFrames};
 use crate::pipeline::{Cue, Pipeline, PipelineConfig};
-use crate::sphere::{Alarm, Sphere};
+use crate::sphere::{Alarm, HeadingModel, Sphere};
 use crate::wire::{CueMessage, Timing};
 
 /// Report what will be hit, where and when: the time to contact per sector of the view, frame by frame.
@@ -55,7 +55,7 @@ Examples:
   viewsphere run flight.y4m --fov-deg 90 --json-lines | jq -c 'select(.threat.alarm) | [.time_s, .threat]'
   viewsphere run flight.y4m --fov-deg 90 --quiet --overlay out.y4m
   viewsphere run flight.y4m --fov-deg 90 --realtime --quiet --overlay - | ffplay -
-  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere run - --fov-deg 90
+  ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere run - --fov-deg 90
   ffmpeg -f v4l2 -i /dev/video0 -f yuv4mpegpipe - | viewsphere run - --camera cam.yaml --realtime")]
 pub(super) struct Run {
     /// Images; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
@@ -73,6 +73,9 @@ pub(super) struct Run {
     /// Times of the frames: EuRoC's `#timestamp [ns],filename`, or one per line in seconds
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
+    /// How the direction of motion is carried from frame to frame
+    #[arg(long, value_enum, default_value_t = HeadingArg::Straight)]
+    heading: HeadingArg,
     /// Added to all frame times, so that they match those of the gyro's log, in seconds
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
     start_s: f64,
@@ -147,6 +150,7 @@ impl Run {
             sphere: Sphere {
                 derotation: self.gyro.derotation(),
                 sectors: [self.sectors.width, self.sectors.height],
+                heading: self.heading.into(),
                 ..Sphere::default()
             },
             gyro: self.gyro.config()?,
@@ -255,6 +259,9 @@ impl Run {
             return FrameTimes::listed(path, frame_times::read(path)?, source.len(), self.start_s);
         }
         let rate = self.fps.or_else(|| source.rate().map(FrameRate::of_fraction));
+        if rate.is_none() && !self.quiet {
+            print::note("assuming 30 frames per second; --fps or --times give others");
+        }
         Ok(FrameTimes::even(rate.unwrap_or(FrameRate::DEFAULT), self.start_s))
     }
 
@@ -268,6 +275,25 @@ impl Run {
         let middle = |side: u32| 0.5 * (f64::from(side) - 1.0);
         let (u_0, v_0) = (middle(size.width), middle(size.height));
         Ok(Camera { size, f_u: f, f_v: f, u_0, v_0, lens: Lens::NONE })
+    }
+}
+
+/// Models of the heading.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum HeadingArg {
+    /// It keeps its direction in the world: the vehicle goes straight on, however the camera rotates or shakes
+    Straight,
+    /// It keeps its direction in the camera's frame: the vehicle flies the way its nose points, as a fixed wing does in
+    /// its turns
+    Turning,
+}
+
+impl From<HeadingArg> for HeadingModel {
+    fn from(heading: HeadingArg) -> Self {
+        match heading {
+            HeadingArg::Straight => Self::Straight,
+            HeadingArg::Turning => Self::Turning,
+        }
     }
 }
 

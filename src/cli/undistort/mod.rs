@@ -35,7 +35,7 @@ Examples:
   viewsphere undistort --camera cam.yaml in.jpg -o out.png --crop --write-camera out.yaml
   viewsphere undistort --camera cam.yaml in.jpg --field field.png
   viewsphere undistort --camera cam.yaml 'frames/%04d.png' -o straight/ --keep-all --size 800x600
-  ffmpeg -i in.mp4 -f yuv4mpegpipe - | viewsphere undistort --camera cam.yaml - -o straight/")]
+  ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere undistort --camera cam.yaml - -o straight/")]
 pub(super) struct Undistort {
     /// An image; or a sequence such as 'frames/%04d.png' or 'frames/*.png'; or a .y4m video; or - for standard input
     #[arg(required = true)]

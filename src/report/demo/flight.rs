@@ -1,6 +1,6 @@
 //! The demo's flight.
 
-use crate::quantile::{median, nearest, sorted};
+use crate::quantile::{median, nearest_rank, sorted};
 use crate::report::flight::{FlightFilm, curves};
 use crate::report::html::paragraph;
 use crate::sim::Course;
@@ -94,7 +94,7 @@ impl DemoFlight<'_> {
     pub(super) fn cost_rows(&self) -> Vec<(&'static str, String)> {
         let spread = |of: &dyn Fn(&Cost) -> f64| {
             let times = sorted(self.costs.iter().map(of));
-            let [median, high] = [0.5, 0.99].map(|share| nearest(&times, share).unwrap_or(f64::NAN));
+            let [median, high] = [500, 990].map(|rank| nearest_rank(&times, rank).unwrap_or(f64::NAN));
             (median, format!("median {median:.2} ms, 99th percentile {high:.2} ms"))
         };
         let mut rows = PARTS.map(|(name, part)| (name, spread(&part).1)).to_vec();

@@ -1,7 +1,7 @@
 //! The page about a whole flight.
 
 use super::{curves, way};
-use crate::quantile::{nearest, sorted};
+use crate::quantile::{nearest, nearest_rank, sorted};
 use crate::report::html::{figures, page, paragraph, section, tile};
 use crate::sim::Course;
 use crate::sim::flight::{Body, Cost, FlightConfig, Measured, Outcome, Record, Sensor, Summary};
@@ -58,7 +58,8 @@ impl FlightReport<'_> {
             tile("path efficiency", format_args!("{:.0} %", 100.0 * self.summary.efficiency()), ""),
             tile("frames without a valid cue", format_args!("{:.1} %", 100.0 * invalid), ""),
         ];
-        let median = nearest(&sorted(self.costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64())), 0.5);
+        let median =
+            nearest_rank(&sorted(self.costs.iter().map(|cost| 1e3 * cost.total().as_secs_f64())), 500);
         let cost = median.map(|ms| tile("computing time per frame", format_args!("{ms:.1} ms"), ""));
         format!("<div class=\"tiles\">\n{}{}</div>\n", tiles.concat(), cost.unwrap_or_default())
     }
@@ -114,7 +115,7 @@ impl FlightReport<'_> {
         }
         for (name, _, part) in curves::PARTS {
             let times = sorted(self.costs.iter().map(part));
-            if let [Some(median), Some(high)] = [0.5, 0.99].map(|share| nearest(&times, share)) {
+            if let [Some(median), Some(high)] = [500, 990].map(|rank| nearest_rank(&times, rank)) {
                 rows.push((name, format!("median {median:.2} ms, 99th percentile {high:.2} ms")));
             }
         }

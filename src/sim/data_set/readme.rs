@@ -95,7 +95,7 @@ pub(super) fn write(
              \x20   viewsphere flow 'frames/%06d.png' -o estimate/\n\
              \x20   viewsphere eval --truth flow/000000.flo estimate/000000.flo\n\
              \x20   viewsphere run 'frames/%06d.png' --camera camera.yaml --times times.csv --gyro gyro.csv \
-             --camera-from-gyro frd\n\n\
+             --camera-from-gyro frd --heading turning\n\n\
              The sky has a true flow but no texture, and counts in `eval` unless `--mask` excludes it: the pixels whose depth \
              is infinite.\n";
     write_bytes(folder.path("README.md"), text.as_bytes())
