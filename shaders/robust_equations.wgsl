@@ -8,6 +8,8 @@ struct Params {
     kappa: f32,  // share of its Hessian by which an expansion is continued to a place between pixels
     floor: f32,  // added to the squared slope that divides an equation
     robust: f32, // square of the residual up to which the weight is nearly constant; 0 for equal weights
+    outside: f32, // weight of a place outside the second frame: 1 or 0
+    border: f32, // 1 to weight pixels near the border less
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -34,7 +36,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
     let s = n.x * (r.x * r.x) + n.y * (r.y * r.y);
     let robust = select(1.0, inverseSqrt(s + params.robust), params.robust > 0.0);
-    let w = select(0.0, robust, second.inside) * n;
+    let edge = border_weight(x, params.width) * border_weight(y, params.height);
+    let border = 1.0 + params.border * (edge * edge - 1.0);
+    let w = select(params.outside, 1.0, second.inside) * border * robust * n;
     let g = w.x * h.x * h.xy + w.y * h.y * h.yz;
     let g_yy = w.x * h.y * h.y + w.y * h.z * h.z;
     let q = w.x * r.x * h.xy + w.y * r.y * h.yz;

@@ -7,6 +7,8 @@ struct Params {
     kappa: f32,  // share of its Hessian by which an expansion is continued to a place between pixels
     floor: f32,  // added to the squared slope that divides an equation
     robust: f32, // square of the residual up to which the weight is nearly constant; 0 for equal weights
+    outside: f32, // weight of a place outside the second frame: 1 or 0
+    border: f32, // 1 to weight pixels near the border less
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -53,13 +55,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
     let s = n.x * (r.x * r.x) + n.y * (r.y * r.y);
     let robust = select(1.0, inverseSqrt(s + params.robust), params.robust > 0.0);
-    let certainty = certainty_0[i] * sum;
-    let w = certainty * robust * n;
+    // A place outside counts with the pixel's certainty; otherwise halving all certainty would double its weight.
+    let own = certainty_0[i];
+    let certainty = own * select(own, sum, inside);
+    let edge = border_weight(x, params.width) * border_weight(y, params.height);
+    let border = 1.0 + params.border * (edge * edge - 1.0);
+    let w = select(params.outside, 1.0, inside) * border * certainty * robust * n;
     let g = w.x * h.x * h.xy + w.y * h.y * h.yz;
     let g_yy = w.x * h.y * h.y + w.y * h.z * h.z;
     let q = w.x * r.x * h.xy + w.y * r.y * h.yz;
-    // Places outside, equations without certainty, overflow and NaN become zeros, so that they do not spread.
-    let known = inside && certainty > 1e-6 && abs(g.x) + abs(g.y) + abs(g_yy) + abs(q.x) + abs(q.y) <= 1e30;
+    // Equations without certainty, overflow and NaN become zeros, so that they do not spread.
+    let known = certainty > 1e-6 && abs(g.x) + abs(g.y) + abs(g_yy) + abs(q.x) + abs(q.y) <= 1e30;
     if id.x < stride && id.y < params.height {
         let at = 5u * id.y * stride + id.x;
         equations[at] = select(0.0, g.x, known);

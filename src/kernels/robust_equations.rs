@@ -11,7 +11,7 @@
 //! share κ of its own Hessian: linear interpolation errs by half the slope's second derivative, continuation by as much in
 //! the other direction.
 
-use super::expansion_pair::{BLOCK, Block, ExpansionPair, Model, fours};
+use super::expansion_pair::{BLOCK, Block, ExpansionPair, Model, Stretch, fours};
 use super::parallel_rows::dimensions;
 use super::test_inputs::{Fill, cases as each_fill, planes, quads};
 use crate::frame::Size;
@@ -30,6 +30,10 @@ params! {
         floor: f32,
         /// ε², in square pixels, above 0; 0 for equations that all have the weight 1.
         robust: f32,
+        /// The weight of a pixel whose place is outside the second frame: 1, with the first expansion alone, or 0.
+        outside: f32,
+        /// 1 to take OpenCV's weights off pixels near the border, or 0: a window that repeats the border counts them often.
+        border: f32,
     }
 }
 
@@ -69,12 +73,13 @@ fn reference(
         stride,
         kappa: p.kappa,
     };
-    pair.each_block(equations, flow, #[inline(always)] |model, _| equations_of(model, p));
+    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p));
 }
 
-/// G = ψ Σ n h hᵀ and q = ψ Σ n r h over the two equations: channels xx, xy, yy, x, y; zeros outside the second frame.
+/// G = ψ Σ n h hᵀ and q = ψ Σ n r h over the two equations: channels xx, xy, yy, x, y; outside the second frame the first expansion's own, times
+/// `outside`.
 #[inline(always)]
-pub(super) fn equations_of(model: &Model, p: &Params) -> [Block; 5] {
+pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params) -> [Block; 5] {
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, inside) in model.inside.iter().enumerate() {
         // The model has half of the Hessians and of the slopes' difference.
@@ -82,7 +87,9 @@ pub(super) fn equations_of(model: &Model, p: &Params) -> [Block; 5] {
         let (r_x, r_y) = (2.0 * model.b_x[i], 2.0 * model.b_y[i]);
         let [n_x, n_y, s] = residual(xx, xy, yy, r_x, r_y, p.floor);
         let psi = if p.robust > 0.0 { 1.0 / (s + p.robust).sqrt() } else { 1.0 };
-        let psi = if *inside > 0.0 { psi } else { 0.0 };
+        let psi = if *inside > 0.0 { psi } else { p.outside * psi };
+        let edge = stretch.weights_x[i] * stretch.weight_y;
+        let psi = psi * (1.0 + p.border * (edge * edge - 1.0));
         let (n_x, n_y) = (psi * n_x, psi * n_y);
         channels[0][i] = n_x * xx * xx + n_y * xy * xy;
         channels[1][i] = n_x * xx * xy + n_y * xy * yy;
@@ -104,7 +111,8 @@ pub(super) fn residual(xx: f32, xy: f32, yy: f32, r_x: f32, r_y: f32, floor: f32
 /// Cases with robust weights and continued expansions, and cases with neither.
 fn cases(size: Size) -> Vec<Case> {
     let all = [("robust", 0.3, 0.25, 0.01), ("plain", 0.0, 0.04, 0.0)].map(|(name, kappa, floor, robust)| {
-        let params = Params { width: size.width, height: size.height, kappa, floor, robust };
+        let outside = if robust > 0.0 { 0.0 } else { 1.0 };
+        let params = Params { width: size.width, height: size.height, kappa, floor, robust, outside, border: outside };
         let cases = inputs(size, bytemuck::bytes_of(&params), &[]);
         cases.into_iter().map(move |case| Case { name: format!("{}, {name}", case.name), ..case })
     });

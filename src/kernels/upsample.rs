@@ -40,6 +40,8 @@ fn reference(p: &Params, coarse: &[f32], place_x: &[f32], place_y: &[f32], flow:
     let (in_width, in_height, in_stride) = dimensions(p.in_width, p.in_height);
     let channels = p.channels as usize;
     let split = Split { scratch: in_stride, ..Split::rows_of(channels * stride) };
+    let places = place_x.as_chunks::<2>().0;
+    let doubles = doubles(places, width, in_width);
     bands(flow, &mut [], split, #[inline(always)] |band| {
         for (i, rows) in band.out.chunks_exact_mut(channels * stride).enumerate() {
             let y = band.y0 + i;
@@ -51,15 +53,31 @@ fn reference(p: &Params, coarse: &[f32], place_x: &[f32], place_y: &[f32], flow:
                 for ((mixed, above), below) in band.scratch.iter_mut().zip(above).zip(below) {
                     *mixed = mix(*above, *below, fraction);
                 }
-                for (out, place) in out[..width].iter_mut().zip(place_x.as_chunks::<2>().0) {
+                let mixed = &band.scratch[..in_width];
+                let at = |place: &[f32; 2]| {
                     let left = place[0] as usize;
                     let right = (left + 1).min(in_width - 1);
-                    *out = p.scale * mix(band.scratch[left], band.scratch[right], place[1]);
+                    p.scale * mix(mixed[left], mixed[right], place[1])
+                };
+                if doubles {
+                    // Neighbouring columns need no table, so that they are computed side by side.
+                    for (out, ends) in out[1..].as_chunks_mut::<2>().0.iter_mut().zip(mixed.windows(2)) {
+                        *out = [0.25, 0.75].map(|fraction| p.scale * mix(ends[0], ends[1], fraction));
+                    }
+                    (out[0], out[width - 1]) = (at(&places[0]), at(&places[width - 1]));
+                } else {
+                    out.iter_mut().zip(places).for_each(|(out, place)| *out = at(place));
                 }
                 repeat_last(out, width);
             }
         }
     });
+}
+
+/// Whether each column lies a quarter of a pixel beside one of half as many columns.
+fn doubles(places: &[[f32; 2]], width: usize, in_width: usize) -> bool {
+    let inner = (1..width.saturating_sub(1)).map(|x| [((x - 1) / 2) as f32, if x % 2 == 1 { 0.25 } else { 0.75 }]);
+    width == 2 * in_width && in_width > 1 && inner.zip(&places[1..]).all(|(expected, found)| expected == *found)
 }
 
 #[inline(always)]

@@ -48,10 +48,10 @@ fn reference(
     let pair =
         ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
-        let mut channels = equations_of(model, p);
+        let mut channels = equations_of(model, stretch, p);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {
-            let certainty = own * model.certainty_1[i];
-            let weight = if model.inside[i] > 0.0 && certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
+            let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
+            let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };
             for channel in &mut channels {
                 channel[i] = if weight > 0.0 { weight * channel[i] } else { 0.0 };
             }
@@ -62,6 +62,6 @@ fn reference(
 
 fn cases(size: Size) -> Vec<Case> {
     let params =
-        Params { width: size.width, height: size.height, kappa: 0.3, floor: 0.25, robust: 0.01 };
+        Params { width: size.width, height: size.height, kappa: 0.3, floor: 0.25, robust: 0.01, outside: 1.0, border: 1.0 };
     inputs(size, bytemuck::bytes_of(&params), &[[0.0, 1.0]])
 }

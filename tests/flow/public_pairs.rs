@@ -211,10 +211,10 @@ fn total_variation_errs_alike_on_the_gpu() {
 }
 
 /// The largest allowed error of one iteration of increments, as a share of the error of OpenCV's field with the light
-/// setting, pair by pair: measured are 0.83, 0.78, 0.86, 0.27 and 0.43.
+/// setting, pair by pair: measured are .76, .83, .42, .11 and .24.
 #[test]
 fn increments_err_less() {
-    const SHARES: [f64; 5] = [0.85, 0.8, 0.9, 0.3, 0.45];
+    const SHARES: [f64; 5] = [0.8, 0.87, 0.45, 0.13, 0.27];
     let Some(folder) = sets() else { return };
     let config = Farneback::increment();
     for (pair, share) in PAIRS.iter().zip(SHARES) {

@@ -81,7 +81,7 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&robust_equations::KERNEL, "(a.y + b.y) * f.y", "(a.y + b.y) * f.x"),
     (&robust_equations::KERNEL, "dot(h.yz, h.yz)", "dot(h.xy, h.yz)"),
     (&robust_equations::KERNEL, "s + params.robust", "s + 1.01 * params.robust"),
-    (&robust_equations::KERNEL, "select(0.0, robust, second.inside)", "robust"),
+    (&robust_equations::KERNEL, "select(params.outside, 1.0, second.inside)", "1.0"),
     (&weighted_robust_equations::KERNEL, "f - vec2f(0.0, 1.0)", "f"),
     (&weighted_robust_equations::KERNEL, "certainty * robust", "robust"),
     (&weighted_robust_equations::KERNEL, "certainty > 1e-6", "certainty > 1e-2"),

@@ -5,9 +5,17 @@ use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::expansions::{Expansion, Expansions};
 use crate::flow::{Level, Wanted};
 use crate::kernels::{
-    solve_increment, weighted_normal_equations, confidence, normal_equations, residual, solve, tables, window_y,
+    solve_increment, weighted_normal_equations, confidence, normal_equations, residual, robust_equations, weighted_robust_equations, solve, tables, window_y,
 };
+use crate::frame::Size;
 use crate::plan::{BufId, Bufs, Shape, Step};
+
+/// The share of its Hessian by which an expansion is continued to a place between pixels, with normalised equations.
+const KAPPA: f32 = 0.3;
+/// ζ²: the floor of the squared slope that divides a normalised equation.
+const FLOOR: f32 = 0.04;
+/// What is added to the determinant of a window's normalised equations.
+const REGULAR: f32 = 1e-6;
 
 /// The buffers of this part of the plan.
 pub(super) struct Displacement {
@@ -16,6 +24,8 @@ pub(super) struct Displacement {
     iterations: u32,
     /// Whether an iteration adds its result to the flow so far.
     adds: bool,
+    /// Whether each equation is divided by its own slope.
+    normalized: bool,
     radius: u32,
     /// The weight of pixels that the flow takes outside the second frame.
     outside: f32,
@@ -36,7 +46,7 @@ struct Evidence {
 impl Displacement {
     pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level], wanted: Wanted) -> Self {
         let finest = levels[0].size;
-        let adds = config.update == Update::Increment;
+        let adds = config.update != Update::Flow;
         let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, adds);
         let window = tables::window(config.winsize, config.window == Window::Gaussian);
         let radius = window.len() / 2;
@@ -44,6 +54,7 @@ impl Displacement {
             coarse_to_fine,
             finest: levels[0],
             adds,
+            normalized: config.update == Update::Normalized,
             iterations: config.iterations,
             radius: radius as u32,
             outside: if config.outside == Outside::First { 1.0 } else { 0.0 },
@@ -93,36 +104,7 @@ impl Displacement {
         let (size, so_far) = (level.size, *so_far);
         let (width, height) = (size.width, size.height);
         let five = Shape::planar(size, 5);
-        let equations = normal_equations::Params {
-            width,
-            height,
-            carried: if self.adds { 0.0 } else { 1.0 },
-            outside: self.outside,
-        };
-        steps.push(match (first.certainty, second.certainty) {
-            (Some(certainty_0), Some(certainty_1)) => Step::new(
-                &weighted_normal_equations::KERNEL,
-                label.clone(),
-                equations,
-                &[
-                    first.quad,
-                    first.cross_term,
-                    certainty_0,
-                    second.quad,
-                    second.cross_term,
-                    certainty_1,
-                    so_far,
-                ],
-                &[(self.equations, five)],
-            ),
-            _ => Step::new(
-                &normal_equations::KERNEL,
-                label.clone(),
-                equations,
-                &[first.quad, first.cross_term, second.quad, second.cross_term, so_far],
-                &[(self.equations, five)],
-            ),
-        });
+        steps.push(self.equations(level.size, label, [first, second], so_far));
         steps.push(Step::new(
             &window_y::KERNEL,
             label.clone(),
@@ -139,10 +121,42 @@ impl Displacement {
                 Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow)
             }
             true => {
-                let params = solve_increment::Params { width, height, radius, regular: 1e-3 };
+                let regular = if self.normalized { REGULAR } else { 1e-3 };
+                let params = solve_increment::Params { width, height, radius, regular };
                 Step::new(&solve_increment::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
             }
         });
+    }
+
+    /// The step that sets up each pixel's equations.
+    fn equations(&self, size: Size, label: &str, [first, second]: [Expansion; 2], so_far: BufId) -> Step {
+        let (width, height) = (size.width, size.height);
+        let output = [(self.equations, Shape::planar(size, 5))];
+        let weighted = [first.certainty, second.certainty];
+        let inputs = match weighted {
+            [Some(certainty_0), Some(certainty_1)] => vec![
+                first.quad,
+                first.cross_term,
+                certainty_0,
+                second.quad,
+                second.cross_term,
+                certainty_1,
+                so_far,
+            ],
+            _ => vec![first.quad, first.cross_term, second.quad, second.cross_term, so_far],
+        };
+        let weighted = weighted[0].is_some();
+        if self.normalized {
+            let kernel =
+                if weighted { &weighted_robust_equations::KERNEL } else { &robust_equations::KERNEL };
+            let (kappa, floor, outside) = (KAPPA, FLOOR, self.outside);
+            let params = robust_equations::Params { width, height, kappa, floor, robust: 0.0, outside, border: 1.0 };
+            return Step::new(kernel, label, params, &inputs, &output);
+        }
+        let kernel = if weighted { &weighted_normal_equations::KERNEL } else { &normal_equations::KERNEL };
+        let carried = if self.adds { 0.0 } else { 1.0 };
+        let params = normal_equations::Params { width, height, carried, outside: self.outside };
+        Step::new(kernel, label, params, &inputs, &output)
     }
 
     /// The steps that compute the confidence of the finest level's flow.

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::flow::parameter::{Choice, Parameter, Parameters, choice_name, choose, read, wrong};
 
 const WINDOWS: [(&str, Window); 2] = [("box", Window::Box), ("gaussian", Window::Gaussian)];
-const UPDATES: [(&str, Update); 2] = [("flow", Update::Flow), ("increment", Update::Increment)];
+const UPDATES: [(&str, Update); 3] =
+    [("flow", Update::Flow), ("increment", Update::Increment), ("normalized", Update::Normalized)];
 const OUTSIDES: [(&str, Outside); 2] = [("first", Outside::First), ("nothing", Outside::Nothing)];
 
 const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
@@ -45,6 +46,7 @@ impl Parameters for Farneback {
                     "The increment of the flow: finer detail with a wider window. Requires a Gaussian window, or one \
                      iteration",
                 ),
+                ("normalized", "The increment of equations that are divided by their own slopes: less error still"),
             ],
         ),
         choice(
@@ -63,7 +65,7 @@ impl Parameters for Farneback {
         (
             "increment",
             "Half the default's work and less error, except where there is no texture (as in a sky): 1 iteration of \
-             increments, Gaussian winsize 31, outside nothing",
+             normalized increments, Gaussian winsize 31, poly-n 3, poly-sigma 1, outside nothing",
         ),
     ];
 

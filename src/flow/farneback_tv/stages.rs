@@ -255,6 +255,8 @@ impl FarnebackTvStages {
             kappa: KAPPA,
             floor: FLOOR,
             robust: ROBUST,
+            outside: 0.0,
+            border: if iteration.number == 1 { 1.0 } else { 0.0 },
         };
         let output = [(self.equations, Shape::planar(size, 5))];
         let label = iteration.label.clone();
