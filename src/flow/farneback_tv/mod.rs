@@ -5,6 +5,7 @@
 //! and acts on the difference from expected slopes, which coarse levels average and finer ones take over. A non-local step
 //! ends the finest levels.
 
+mod buffers;
 mod parameters;
 mod stages;
 

@@ -1,6 +1,7 @@
 //! The buffers and steps of the method.
 
 use super::FarnebackTv;
+use super::buffers::{Confidence, Fit, Slopes, Window};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::expansions::{Expanded, Expansion, Expansions};
 use crate::flow::levels::levels_down_to;
@@ -8,7 +9,7 @@ use crate::flow::{Evidence, Level, Stages, Wanted};
 use crate::frame::Size;
 use crate::kernels::{
     expected_slope, fit_weight, links, misfit, nonlocal, resample_x, resample_y, robust_equations, slope_weights,
-    smoothness, solve_increment, sweep, tables, upsample, weighted_robust_equations, window_y,
+    smoothness, solve_increment, sweep, upsample, weighted_robust_equations, window_y,
 };
 use crate::plan::{BufId, Bufs, Shape, Step};
 
@@ -16,10 +17,6 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 const POLY: (u32, f64) = (2, 1.0);
 /// Radius and standard deviation in pixels of the window of the first increment on each level.
 const INCREMENT_WINDOW: (usize, f64) = (8, 2.5);
-/// Radius and standard deviation in pixels of the window over which expected slopes are averaged.
-const SLOPE_WINDOW: (usize, f64) = (18, 6.0);
-/// Radius and standard deviation in pixels of the window of the confidence.
-const CONFIDENCE_WINDOW: (usize, f64) = (18, 6.0);
 /// Slopes are averaged on levels of this scale and coarser ones.
 const SLOPE_SCALE: f64 = 0.25;
 /// The share of its Hessian by which an expansion is continued to a place between pixels.
@@ -54,53 +51,6 @@ pub(super) struct FarnebackTvStages {
     confidence: Option<Confidence>,
 }
 
-/// A window's weights along columns and along rows.
-struct Window {
-    radius: usize,
-    y: BufId,
-    x: BufId,
-}
-
-impl Window {
-    fn new(bufs: &mut Bufs, name: &str, (radius, sigma): (usize, f64)) -> Self {
-        let weights = tables::gauss(sigma, 2 * radius as u32 + 1);
-        Self {
-            radius,
-            y: bufs.constant(format!("{name}, columns"), tables::window_from(&weights, radius)),
-            x: bufs.constant(format!("{name}, rows"), tables::window_from(&weights, radius.next_multiple_of(4))),
-        }
-    }
-}
-
-/// The slopes that are expected of the flow.
-struct Slopes {
-    zero: BufId,
-    /// For each level, finest first.
-    of_level: Vec<BufId>,
-    /// For each level, the tables for reading the coarser one's.
-    place: Vec<Option<[BufId; 2]>>,
-    window: Window,
-}
-
-/// The buffers of the misfit and what follows from it.
-struct Fit {
-    squared_misfit: BufId,
-    agreement: BufId,
-    weight: BufId,
-    /// The certainty of frames that have none.
-    certainty: Option<BufId>,
-}
-
-/// The buffers of the confidence, which is the agreement averaged by a Gaussian.
-struct Confidence {
-    plane: BufId,
-    columns: BufId,
-    full: BufId,
-    enlarged: Option<[BufId; 2]>,
-    gauss: BufId,
-    place: [BufId; 2],
-}
-
 impl FarnebackTvStages {
     pub(super) fn new(bufs: &mut Bufs, config: &FarnebackTv, size: Size, wanted: Wanted) -> Self {
         let levels = levels_down_to(size, config.pyr_scale, 64, f64::from(config.smallest));
@@ -117,7 +67,6 @@ impl FarnebackTvStages {
         let own = levels[finest].size;
         let [one, two, five] = [1, 2, 5].map(|channels| Shape::planar(own, channels));
         let confidence = wanted.confidence || wanted.evidence;
-        let coarsest = levels[levels.len() - 1].size;
         Self {
             config: config.clone(),
             expansions: Expansions::new(bufs, expanded, size, &levels, wanted.certainty),
@@ -125,55 +74,12 @@ impl FarnebackTvStages {
             equations: bufs.computed("equations", five),
             columns: bufs.computed("averaged columns", five),
             increment: Window::new(bufs, "window of increments", INCREMENT_WINDOW),
-            slopes: Slopes {
-                zero: bufs.constant("no slope", vec![0.0; Shape::planar(coarsest, 4).len()]),
-                of_level: levels
-                    .iter()
-                    .enumerate()
-                    .map(|(k, level)| bufs.computed(format!("slopes, level {k}"), Shape::planar(level.size, 4)))
-                    .collect(),
-                place: (0..levels.len())
-                    .map(|k| {
-                        let (fine, coarse) = (levels[k].size, levels.get(k + 1)?.size);
-                        let table = |bufs: &mut Bufs, what: &str, inner, out| {
-                            bufs.constant(format!("{what} of level {}, slopes", k + 1), tables::place(inner, out))
-                        };
-                        Some([
-                            table(bufs, "columns", coarse.width, fine.width),
-                            table(bufs, "rows", coarse.height, fine.height),
-                        ])
-                    })
-                    .collect(),
-                window: Window::new(bufs, "window of slopes", SLOPE_WINDOW),
-            },
+            slopes: Slopes::new(bufs, &levels, finest),
             smooth_weight: bufs.computed("smoothness", one),
             system: bufs.computed("system", five),
             link: bufs.computed("links", two),
-            fit: (nonlocal > 0 || confidence).then(|| Fit {
-                squared_misfit: bufs.computed("squared misfit", one),
-                agreement: bufs.computed("agreement", one),
-                weight: bufs.computed("weight of the fit", one),
-                certainty: (!wanted.certainty).then(|| bufs.constant("full certainty", vec![1.0; one.len()])),
-            }),
-            confidence: confidence.then(|| Confidence {
-                plane: bufs.computed("confidence", Shape::planar(size, 1)),
-                columns: bufs.computed("confidence, columns", one),
-                full: bufs.computed("confidence of the finest level", one),
-                enlarged: (finest > 0).then(|| {
-                    [
-                        bufs.constant("columns of the confidence", tables::place(own.width, size.width)),
-                        bufs.constant("rows of the confidence", tables::place(own.height, size.height)),
-                    ]
-                }),
-                gauss: bufs.constant(
-                    "Gaussian of the confidence",
-                    tables::gauss(CONFIDENCE_WINDOW.1, 2 * CONFIDENCE_WINDOW.0 as u32 + 1),
-                ),
-                place: [
-                    bufs.constant("own columns", tables::place(own.width, own.width)),
-                    bufs.constant("own rows", tables::place(own.height, own.height)),
-                ],
-            }),
+            fit: (nonlocal > 0 || confidence).then(|| Fit::new(bufs, own, wanted.certainty)),
+            confidence: confidence.then(|| Confidence::new(bufs, own, size)),
             finest,
             levels,
         }
@@ -397,7 +303,7 @@ impl FarnebackTvStages {
         self.misfit(steps, label, level, pair, flow);
         let Size { width, height } = level.size;
         let plane = Shape::planar(level.size, 1);
-        let taps = 2 * CONFIDENCE_WINDOW.0 as u32 + 1;
+        let taps = confidence.taps;
         let [place_x, place_y] = confidence.place;
         steps.push(Step::new(
             &resample_y::KERNEL,

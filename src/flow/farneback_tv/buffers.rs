@@ -1,0 +1,123 @@
+//! The buffers of the method's parts.
+
+use crate::flow::Level;
+use crate::frame::Size;
+use crate::kernels::tables;
+use crate::plan::{BufId, Bufs, Shape};
+
+/// Radius and standard deviation in pixels of the window over which expected slopes are averaged.
+const SLOPE_WINDOW: (usize, f64) = (18, 6.0);
+/// Radius and standard deviation in pixels of the window of the confidence.
+const CONFIDENCE_WINDOW: (u32, f64) = (18, 6.0);
+
+/// The weights of a Gaussian window along columns and along rows.
+pub(super) struct Window {
+    pub(super) radius: usize,
+    pub(super) y: BufId,
+    pub(super) x: BufId,
+}
+
+impl Window {
+    pub(super) fn new(bufs: &mut Bufs, name: &str, (radius, sigma): (usize, f64)) -> Self {
+        let weights = tables::gauss(sigma, 2 * radius as u32 + 1);
+        Self {
+            radius,
+            y: bufs.constant(format!("{name}, columns"), tables::window_from(&weights, radius)),
+            x: bufs.constant(format!("{name}, rows"), tables::window_from(&weights, radius.next_multiple_of(4))),
+        }
+    }
+}
+
+/// The slopes that are expected of the flow.
+pub(super) struct Slopes {
+    /// Those of the coarsest level before any are known.
+    pub(super) zero: BufId,
+    /// For each level, finest first; those of levels that are left out are never read.
+    pub(super) of_level: Vec<BufId>,
+    /// For each level, the tables for reading the coarser one's.
+    pub(super) place: Vec<Option<[BufId; 2]>>,
+    pub(super) window: Window,
+}
+
+impl Slopes {
+    pub(super) fn new(bufs: &mut Bufs, levels: &[Level], finest: usize) -> Self {
+        let coarsest = levels[levels.len() - 1].size;
+        let zero = bufs.constant("no slope", vec![0.0; Shape::planar(coarsest, 4).len()]);
+        let of_level = levels.iter().enumerate().map(|(k, level)| match k < finest {
+            true => zero,
+            false => bufs.computed(format!("slopes, level {k}"), Shape::planar(level.size, 4)),
+        });
+        let of_level = of_level.collect();
+        let place = (0..levels.len()).map(|k| {
+            let (fine, coarse) = (levels[k].size, levels.get(k + 1).filter(|_| k >= finest)?.size);
+            let mut table = |what: &str, inner, out| {
+                bufs.constant(format!("{what} of level {}, slopes", k + 1), tables::place(inner, out))
+            };
+            Some([table("columns", coarse.width, fine.width), table("rows", coarse.height, fine.height)])
+        });
+        let place = place.collect();
+        Self { zero, of_level, place, window: Window::new(bufs, "window of slopes", SLOPE_WINDOW) }
+    }
+}
+
+/// The buffers of the misfit and what follows from it.
+pub(super) struct Fit {
+    pub(super) squared_misfit: BufId,
+    pub(super) agreement: BufId,
+    pub(super) weight: BufId,
+    /// The certainty of frames that have none.
+    pub(super) certainty: Option<BufId>,
+}
+
+impl Fit {
+    pub(super) fn new(bufs: &mut Bufs, size: Size, certainty: bool) -> Self {
+        let plane = Shape::planar(size, 1);
+        Self {
+            squared_misfit: bufs.computed("squared misfit", plane),
+            agreement: bufs.computed("agreement", plane),
+            weight: bufs.computed("weight of the fit", plane),
+            certainty: (!certainty).then(|| bufs.constant("full certainty", vec![1.0; plane.len()])),
+        }
+    }
+}
+
+/// The buffers of the confidence, which is the agreement averaged by a Gaussian.
+pub(super) struct Confidence {
+    /// The result, at the size of the images.
+    pub(super) plane: BufId,
+    pub(super) columns: BufId,
+    /// The confidence of the finest computed level.
+    pub(super) full: BufId,
+    /// The tables that enlarge it, if that level is not the images' own.
+    pub(super) enlarged: Option<[BufId; 2]>,
+    pub(super) gauss: BufId,
+    pub(super) taps: u32,
+    /// The tables that keep columns and rows where they are.
+    pub(super) place: [BufId; 2],
+}
+
+impl Confidence {
+    /// Buffers for the finest computed level, of size `own`, and images of size `size`.
+    pub(super) fn new(bufs: &mut Bufs, own: Size, size: Size) -> Self {
+        let plane = Shape::planar(own, 1);
+        let (radius, sigma) = CONFIDENCE_WINDOW;
+        let taps = 2 * radius + 1;
+        Self {
+            plane: bufs.computed("confidence", Shape::planar(size, 1)),
+            columns: bufs.computed("confidence, columns", plane),
+            full: bufs.computed("confidence of the finest level", plane),
+            enlarged: (own != size).then(|| {
+                [
+                    bufs.constant("columns of the confidence", tables::place(own.width, size.width)),
+                    bufs.constant("rows of the confidence", tables::place(own.height, size.height)),
+                ]
+            }),
+            gauss: bufs.constant("Gaussian of the confidence", tables::gauss(sigma, taps)),
+            taps,
+            place: [
+                bufs.constant("own columns", tables::place(own.width, own.width)),
+                bufs.constant("own rows", tables::place(own.height, own.height)),
+            ],
+        }
+    }
+}
