@@ -69,7 +69,8 @@ pub enum Outside {
 pub struct Farneback {
     /// The size of a level relative to the next finer one, in (0, 1).
     pub pyr_scale: f64,
-    /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out.
+    /// Levels beside the full image, 0 to 32. Levels whose shorter side would be under 32 pixels are left out; under 24 with
+    /// [`Update::Normalized`].
     pub levels: u32,
     /// Width of the window in pixels, 2 to 1024. An even width extends as far as the next odd one.
     pub winsize: u32,
