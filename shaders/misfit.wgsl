@@ -28,16 +28,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
     let second = continued_second_at(vec2f(f32(x), f32(y)) + d, params.kappa);
     let m = model(Expansion(quad_0[i], cross_term_0[i]), second, vec2f());
-    let h = 2.0 * m.a;
-    let r = 2.0 * m.delta_b;
-    let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
-    let found = n.x * (r.x * r.x) + n.y * (r.y * r.y);
+    let e = slope_residual(m);
     // NaN is as large as can be.
-    let s = select(9.0, found, found < 9.0);
+    let s = select(9.0, e.s, e.s < 9.0);
     let share = select(0.0, certainty[i], second.inside);
     if id.x < stride && id.y < params.height {
         squared_misfit[id.y * stride + id.x] = 9.0 - share * (9.0 - s);
-        let texture = h.x * h.x + 2.0 * (h.y * h.y) + h.z * h.z;
+        let texture = e.h.x * e.h.x + 2.0 * (e.h.y * e.h.y) + e.h.z * e.h.z;
         // A texture without bounds, after overflow, is none.
         let seen = select(0.0, texture / (texture + 1e-2), texture <= 1e30);
         agreement[id.y * stride + id.x] = share * seen * (1.0 - 0.5 * min(sqrt(s), 2.0));

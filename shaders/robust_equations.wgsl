@@ -31,25 +31,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
     let second = continued_second_at(vec2f(f32(x), f32(y)) + d, params.kappa);
     let m = model(Expansion(quad_0[i], cross_term_0[i]), second, vec2f());
-    let h = 2.0 * m.a;
-    let r = 2.0 * m.delta_b;
-    let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
-    let s = n.x * (r.x * r.x) + n.y * (r.y * r.y);
-    let robust = select(1.0, inverseSqrt(s + params.robust), params.robust > 0.0);
-    let edge = border_weight(x, params.width) * border_weight(y, params.height);
-    let border = 1.0 + params.border * (edge * edge - 1.0);
-    let w = select(params.outside, 1.0, second.inside) * border * robust * n;
-    let g = w.x * h.x * h.xy + w.y * h.y * h.yz;
-    let g_yy = w.x * h.y * h.y + w.y * h.z * h.z;
-    let q = w.x * r.x * h.xy + w.y * r.y * h.yz;
-    // Overflow and NaN become zeros, so that they do not spread.
-    let known = abs(g.x) + abs(g.y) + abs(g_yy) + abs(q.x) + abs(q.y) <= 1e30;
-    if id.x < stride && id.y < params.height {
-        let at = 5u * id.y * stride + id.x;
-        equations[at] = select(0.0, g.x, known);
-        equations[at + stride] = select(0.0, g.y, known);
-        equations[at + 2u * stride] = select(0.0, g_yy, known);
-        equations[at + 3u * stride] = select(0.0, q.x, known);
-        equations[at + 4u * stride] = select(0.0, q.y, known);
-    }
+    store_equations(id.xy, slope_residual(m), select(params.outside, 1.0, second.inside), true);
 }

@@ -50,30 +50,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         (a.cross_term + b.cross_term + c.cross_term + e.cross_term) / sum,
     );
     let m = model(Expansion(quad_0[i], cross_term_0[i]), Second(second, inside), vec2f());
-    let h = 2.0 * m.a;
-    let r = 2.0 * m.delta_b;
-    let n = 1.0 / (vec2f(dot(h.xy, h.xy), dot(h.yz, h.yz)) + params.floor);
-    let s = n.x * (r.x * r.x) + n.y * (r.y * r.y);
-    let robust = select(1.0, inverseSqrt(s + params.robust), params.robust > 0.0);
     // A place outside counts with the pixel's certainty; otherwise halving all certainty would double its weight.
     let own = certainty_0[i];
     let certainty = own * select(own, sum, inside);
-    let edge = border_weight(x, params.width) * border_weight(y, params.height);
-    let border = 1.0 + params.border * (edge * edge - 1.0);
-    let w = select(params.outside, 1.0, inside) * border * certainty * robust * n;
-    let g = w.x * h.x * h.xy + w.y * h.y * h.yz;
-    let g_yy = w.x * h.y * h.y + w.y * h.z * h.z;
-    let q = w.x * r.x * h.xy + w.y * r.y * h.yz;
-    // Equations without certainty, overflow and NaN become zeros, so that they do not spread.
-    let known = certainty > 1e-6 && abs(g.x) + abs(g.y) + abs(g_yy) + abs(q.x) + abs(q.y) <= 1e30;
-    if id.x < stride && id.y < params.height {
-        let at = 5u * id.y * stride + id.x;
-        equations[at] = select(0.0, g.x, known);
-        equations[at + stride] = select(0.0, g.y, known);
-        equations[at + 2u * stride] = select(0.0, g_yy, known);
-        equations[at + 3u * stride] = select(0.0, q.x, known);
-        equations[at + 4u * stride] = select(0.0, q.y, known);
-    }
+    let outside = select(params.outside, 1.0, inside);
+    // Equations without certainty are left out.
+    store_equations(id.xy, slope_residual(m), certainty * outside, certainty > 1e-6);
 }
 
 // One of the four pixels around a place, continued to the place and times its weight and its certainty, so that pixels

@@ -27,7 +27,7 @@ params! {
 }
 
 kernel!(
-    "misfit" + ["equations", "second", "continued"],
+    "misfit" + ["equations", "second", "continued", "slope_residual"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty, flow) -> (squared_misfit, agreement),
     cases: cases,
     tolerance: Tolerance {

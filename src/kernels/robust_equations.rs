@@ -38,7 +38,7 @@ params! {
 }
 
 kernel!(
-    "robust_equations" + ["equations", "second", "continued"],
+    "robust_equations" + ["equations", "second", "continued", "slope_residual", "robust"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, flow) -> (equations),
     cases: cases,
     tolerance: Tolerance {

@@ -13,7 +13,7 @@ use crate::kernel::{Case, Tolerance, kernel};
 pub use super::robust_equations::Params;
 
 kernel!(
-    "weighted_robust_equations" + ["equations", "second"],
+    "weighted_robust_equations" + ["equations", "second", "slope_residual", "robust"],
     reference(
         Params; quad_0, cross_term_0, certainty_0, quad_1, cross_term_1, certainty_1, flow
     ) -> (equations),
