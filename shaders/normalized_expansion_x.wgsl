@@ -8,6 +8,7 @@ struct Params {
     radius: u32,
     min_share: f32,       // the share of a term that the terms before it must leave unexplained
     least_certainty: f32, // of the whole neighbourhood
+    outside: f32,         // weight of columns outside the image: 1 repeats the border, 0 leaves them out
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -70,15 +71,20 @@ struct Columns {
     b: vec4f,
 }
 
-// Four columns of a channel and the next four; beyond the ends of the row the end's value.
+// Four columns of a channel and the next four; beyond the ends of the row the end's value times its weight.
 fn columns(y: u32, channel: u32, four: i32) -> Columns {
     let stride = (params.width + 3u) / 4u;
     let row = (8u * y + channel) * stride;
     let last = i32(stride) - 1;
     return Columns(
-        repeat_ends(moments[row + u32(clamp(four, 0, last))], four, last),
-        repeat_ends(moments[row + u32(clamp(four + 1, 0, last))], four + 1, last),
+        weight(four) * repeat_ends(moments[row + u32(clamp(four, 0, last))], four, last),
+        weight(four + 1) * repeat_ends(moments[row + u32(clamp(four + 1, 0, last))], four + 1, last),
     );
+}
+
+fn weight(four: i32) -> vec4f {
+    let columns = vec4i(4 * four) + vec4i(0, 1, 2, 3);
+    return select(vec4f(params.outside), vec4f(1.0), columns >= vec4i(0) & columns < vec4i(i32(params.width)));
 }
 
 fn store(four: u32, y: u32, s: Solution) {

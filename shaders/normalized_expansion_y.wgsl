@@ -5,7 +5,8 @@
 struct Params {
     width: u32,
     height: u32,
-    radius: u32, // of the neighbourhood: 2 radius + 1 rows
+    radius: u32,  // of the neighbourhood: 2 radius + 1 rows
+    outside: f32, // weight of rows outside the image: 1 repeats the border, 0 leaves them out
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -33,14 +34,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var k = 0u; k < min((2u * params.radius + 4u) / 4u, MAX_STEPS); k++) {
         let begin = first + 4 * i32(k);
         let y = vec4f(f32(begin)) + vec4f(0.0, 1.0, 2.0, 3.0);
-        let g = applicability[3u * k];
-        let yg = applicability[3u * k + 1u];
-        let yyg = applicability[3u * k + 2u];
+        let rows = vec4i(i32(id.y) + begin) + vec4i(0, 1, 2, 3);
+        let inside = rows >= vec4i(0) & rows < vec4i(i32(params.height));
+        let weight = select(vec4f(params.outside), vec4f(1.0), inside);
+        let g = weight * applicability[3u * k];
+        let yg = weight * applicability[3u * k + 1u];
+        let yyg = weight * applicability[3u * k + 2u];
         let at = vec4u(
-            row(x4, i32(id.y) + begin),
-            row(x4, i32(id.y) + begin + 1),
-            row(x4, i32(id.y) + begin + 2),
-            row(x4, i32(id.y) + begin + 3),
+            row(x4, rows.x),
+            row(x4, rows.y),
+            row(x4, rows.z),
+            row(x4, rows.w),
         );
         let c = mat4x4f(certainty[at.x], certainty[at.y], certainty[at.z], certainty[at.w]);
         let f = mat4x4f(weighted[at.x], weighted[at.y], weighted[at.z], weighted[at.w]);

@@ -32,11 +32,13 @@ pub(super) struct Expanded {
     pub(super) skip: usize,
     /// The number of finest levels, from `skip` on, whose images are kept beside their expansions.
     pub(super) kept_images: usize,
+    /// The weight of the border's repetition outside, with a certainty: 1, or 0 to count only pixels of the image.
+    pub(super) outside: f32,
 }
 
 impl Default for Expanded {
     fn default() -> Self {
-        Self { poly_n: 5, poly_sigma: 1.2, unsmoothed: false, skip: 0, kept_images: 0 }
+        Self { poly_n: 5, poly_sigma: 1.2, unsmoothed: false, skip: 0, kept_images: 0, outside: 1.0 }
     }
 }
 
@@ -71,7 +73,7 @@ impl Expansions {
     ) -> Self {
         let Expanded { poly_n, poly_sigma, skip, kept_images, .. } = expanded;
         let applicability = tables::applicability(poly_n, poly_sigma);
-        let normalized = certainty.then(|| Normalized::new(bufs, size, levels));
+        let normalized = certainty.then(|| Normalized::new(bufs, size, levels, expanded.outside));
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
             let frames = ["even frames", "odd frames"][slot];
             Expansion {

@@ -122,7 +122,7 @@ estimators!(
     lucas_kanade: LucasKanade,
 );
 
-pub use farneback::{Outside, Update, Window};
+pub use farneback::{Border, Motion, Outside, Update, Window};
 
 impl Default for Algorithm {
     fn default() -> Self {

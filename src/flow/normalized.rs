@@ -15,10 +15,12 @@ pub(super) struct Normalized {
     moments: BufId,
     /// The certainty of each level's expansion, finest first, in both slots.
     expansions: Vec<[BufId; 2]>,
+    /// The weight of what the border is repeated with outside the image.
+    outside: f32,
 }
 
 impl Normalized {
-    pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level]) -> Self {
+    pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level], outside: f32) -> Self {
         let plane = Shape::planar(size, 1);
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: &str| {
             bufs.computed(format!("certainty, level {k}, {slot} frames"), Shape::planar(level.size, 1))
@@ -31,6 +33,7 @@ impl Normalized {
             expansions: (levels.iter().enumerate())
                 .map(|(k, level)| ["even", "odd"].map(|slot| expansion(bufs, k, level, slot)))
                 .collect(),
+            outside,
         }
     }
 
@@ -71,14 +74,19 @@ impl Normalized {
             Step::new(
                 &normalized_expansion_y::KERNEL,
                 format!("level {k}"),
-                normalized_expansion_y::Params { width: size.width, height: size.height, radius },
+                normalized_expansion_y::Params {
+                    width: size.width,
+                    height: size.height,
+                    radius,
+                    outside: self.outside,
+                },
                 &[image, level, weights_y],
                 &[(self.moments, Shape::planar(size, 8))],
             ),
             Step::new(
                 &normalized_expansion_x::KERNEL,
                 format!("level {k}"),
-                normalized_expansion_x::Params::new(size, radius),
+                normalized_expansion_x::Params::new(size, radius, self.outside),
                 &[self.moments, weights_x],
                 &[(quad, Shape::quads(size)), (cross_term, plane), (certainty, plane)],
             ),

@@ -59,6 +59,8 @@ registry!(
     window_y,
     solve,
     solve_increment,
+    affine_columns,
+    solve_affine,
     residual,
     confidence,
     warp,

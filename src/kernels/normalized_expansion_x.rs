@@ -34,6 +34,8 @@ params! {
         min_share: f32,
         /// The least certainty of the whole neighbourhood, Σ g c.
         least_certainty: f32,
+        /// The weight of columns outside the image: 1 repeats the border, 0 leaves them out.
+        outside: f32,
     }
 }
 
@@ -56,10 +58,10 @@ const MIN_SHARE: f32 = 0.05;
 const LEAST_CERTAINTY: f32 = 1e-6;
 
 impl Params {
-    /// The parameters for an image of this size and an applicability of this radius.
-    pub fn new(size: Size, radius: u32) -> Self {
+    /// The parameters for an image of this size, an applicability of this radius, and this weight of columns outside.
+    pub fn new(size: Size, radius: u32, outside: f32) -> Self {
         let Size { width, height } = size;
-        Self { width, height, radius, min_share: MIN_SHARE, least_certainty: LEAST_CERTAINTY }
+        Self { width, height, radius, min_share: MIN_SHARE, least_certainty: LEAST_CERTAINTY, outside }
     }
 }
 
@@ -118,6 +120,8 @@ fn reference(
             for (i, ((quad, cross_term), certainty)) in rows.zip(third.chunks_exact_mut(stride)).enumerate() {
                 for (channel, extended) in columns.chunks_exact_mut(extended).enumerate() {
                     extend_row(extended, &moments[(CHANNELS * (y0 + i) + channel) * stride..], width, radius);
+                    extended[..radius].iter_mut().for_each(|value| *value *= p.outside);
+                    extended[radius + width..].iter_mut().for_each(|value| *value *= p.outside);
                 }
                 for (sum, [power, channel]) in sums.chunks_exact_mut(stride).zip(terms()) {
                     let row = &columns[channel * extended..][..extended];
@@ -194,7 +198,15 @@ fn transpose([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let params = Params::new(size, 5);
+    let all = [("repeated", 1.0), ("left out", 0.0)].map(|(name, outside)| {
+        let cases = cases_of(size, outside);
+        cases.into_iter().map(move |case| Case { name: format!("{}, border {name}", case.name), ..case })
+    });
+    all.into_iter().flatten().collect()
+}
+
+fn cases_of(size: Size, outside: f32) -> Vec<Case> {
+    let params = Params::new(size, 5, outside);
     let applicability = tables::applicability(5, 1.2);
     let outputs = [4 * size.stride(), size.stride(), size.stride()];
     each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &outputs, size, |fill| {
@@ -202,7 +214,7 @@ fn cases(size: Size) -> Vec<Case> {
         let [weighted, certainty] = masked(size, fill);
         let weights = tables::applicability_from(&applicability.weights, 5);
         let mut moments = vec![0.0; CHANNELS * size.stride() * size.height as usize];
-        let params = normalized_y::Params { width: size.width, height: size.height, radius: 5 };
+        let params = normalized_y::Params { width: size.width, height: size.height, radius: 5, outside };
         (normalized_y::KERNEL.reference)(
             bytemuck::bytes_of(&params),
             &[&weighted, &certainty, &weights],

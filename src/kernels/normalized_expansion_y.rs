@@ -3,8 +3,8 @@
 //!
 //! Channels are Σ yᵏ g c for k from 0 to 4, the elements of the normal matrix, then Σ yᵏ g c f for k from 0 to 2.
 //! Farnebäck, Two-frame motion estimation based on polynomial expansion, SCIA 2003, section 2, with the separable
-//! Gaussian applicability of his thesis (2002). The border is replicated, so that a certainty of 1 everywhere gives the
-//! expansion without certainty.
+//! Gaussian applicability of his thesis (2002). With a weight of 1 the border is repeated outside, so that a certainty
+//! of 1 everywhere gives the expansion without certainty; with 0 only pixels of the image count.
 
 use super::expansion_y::power;
 use super::parallel_rows::{Split, bands, clamp_index, dimensions, weighted_sum};
@@ -22,6 +22,8 @@ params! {
         height: u32,
         /// The neighbourhood has `2 radius + 1` rows.
         radius: u32,
+        /// The weight of rows outside the image: 1 repeats the border, 0 leaves them out.
+        outside: f32,
     }
 }
 
@@ -74,8 +76,13 @@ fn reference(p: &Params, weighted: &[f32], certainty: &[f32], applicability: &[f
             {
                 let weights = &band.scratch[power * taps..][..taps];
                 for (i, rows) in band.out.chunks_exact_mut(CHANNELS * stride).enumerate() {
-                    let first = (band.y0 + i) as isize - radius as isize;
-                    weighted_sum(&mut rows[channel * stride..][..stride], weights, |k| {
+                    let y = band.y0 + i;
+                    let inside = match p.outside > 0.0 {
+                        true => 0..taps,
+                        false => radius.saturating_sub(y)..taps.min(height + radius - y),
+                    };
+                    let first = (y + inside.start) as isize - radius as isize;
+                    weighted_sum(&mut rows[channel * stride..][..stride], &weights[inside], |k| {
                         &picture[clamp_index(first + k as isize, height) * stride..][..stride]
                     });
                 }
@@ -85,11 +92,16 @@ fn reference(p: &Params, weighted: &[f32], certainty: &[f32], applicability: &[f
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let params = Params { width: size.width, height: size.height, radius: 5 };
-    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[CHANNELS * size.stride()], size, |fill| {
-        let [weighted, certainty] = masked(size, fill);
-        vec![weighted, certainty, tables::applicability_from(&tables::applicability(5, 1.2).weights, 5)]
-    })
+    let all = [("repeated", 1.0), ("left out", 0.0)].map(|(name, outside)| {
+        let params = Params { width: size.width, height: size.height, radius: 5, outside };
+        let rows = [CHANNELS * size.stride()];
+        let cases = each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &rows, size, |fill| {
+            let [weighted, certainty] = masked(size, fill);
+            vec![weighted, certainty, tables::applicability_from(&tables::applicability(5, 1.2).weights, 5)]
+        });
+        cases.into_iter().map(move |case| Case { name: format!("{}, border {name}", case.name), ..case })
+    });
+    all.into_iter().flatten().collect()
 }
 
 /// An image times its certainty, and that certainty, of which a quarter of the image has none.

@@ -195,7 +195,7 @@ pub(super) fn equations(size: Size, fill: Fill) -> Vec<f32> {
 }
 
 /// Equations of edges along one direction: `ratio` is the second eigenvalue relative to the first.
-fn edges(size: Size, ratio: f32) -> Vec<f32> {
+pub(super) fn edges(size: Size, ratio: f32) -> Vec<f32> {
     made(size, |random| {
         let p = 10.0 + 90.0 * random.next();
         (0.6, [p, ratio * p])

@@ -179,7 +179,8 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
     }
     let applicability = tables::applicability(5, 1.2);
     let mut moments = vec![0.0; 8 * weighted.len()];
-    let params = normalized_expansion_y::Params { width: size.width, height: size.height, radius: 5 };
+    let params =
+        normalized_expansion_y::Params { width: size.width, height: size.height, radius: 5, outside: 1.0 };
     let weights = tables::applicability_from(&applicability.weights, 5);
     (normalized_expansion_y::KERNEL.reference)(
         bytemuck::bytes_of(&params),
@@ -190,7 +191,7 @@ fn expansion_is_exact_up_to_the_edge_of_a_mask() {
     let mut cross_term = vec![f32::NAN; weighted.len()];
     let mut known = vec![f32::NAN; weighted.len()];
     (normalized_expansion_x::KERNEL.reference)(
-        bytemuck::bytes_of(&normalized_expansion_x::Params::new(size, 5)),
+        bytemuck::bytes_of(&normalized_expansion_x::Params::new(size, 5, 1.0)),
         &[&moments, &tables::applicability_from(&applicability.weights, 8)],
         &mut [&mut quad, &mut cross_term, &mut known],
     );

@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use viewsphere::Error;
-use viewsphere::flow::{Algorithm, Farneback, FlowOptions, Initial, Outside, Update, Window, plan};
+use viewsphere::flow::{
+    Algorithm, Border, Farneback, FlowOptions, Initial, Motion, Outside, Update, Window, plan,
+};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Size};
 use viewsphere::kernels::test_inputs::Random;
 
@@ -94,22 +96,30 @@ fn the_gpu_gives_numbers_at_small_sizes() {
 /// Every legal parameter for which a plan can be checked in a short time.
 fn legal() -> impl Strategy<Value = Farneback> {
     let window = prop_oneof![Just(Window::Box), Just(Window::Gaussian)];
-    let update = prop_oneof![Just(Update::Flow), Just(Update::Increment)];
+    let update = prop_oneof![Just(Update::Flow), Just(Update::Increment), Just(Update::Normalized)];
     let outside = prop_oneof![Just(Outside::First), Just(Outside::Nothing)];
+    let motion = prop_oneof![Just(Motion::Constant), Just(Motion::Affine)];
+    let border = prop_oneof![Just(Border::Replicate), Just(Border::Normalized)];
+    let shape = (window, update, outside, motion, border);
     let scale =
         prop_oneof![4 => 0.1..0.95, 1 => Just(f64::MIN_POSITIVE), 1 => Just(1.0 - f64::EPSILON / 2.0)];
     let sigma = prop_oneof![4 => 0.0..3.0, 1 => 0.0..=100.0];
-    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, window, (update, outside)).prop_map(
-        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, window, (update, outside))| Farneback {
-            pyr_scale,
-            levels,
-            winsize,
-            iterations: if (window, update) == (Window::Box, Update::Increment) { 1 } else { iterations },
-            poly_n,
-            poly_sigma,
-            window,
-            update,
-            outside,
+    (scale, 0..=32_u32, 2..=1024_u32, 1..=1000_u32, 1..=32_u32, sigma, shape).prop_map(
+        |(pyr_scale, levels, winsize, iterations, poly_n, poly_sigma, shape)| {
+            let (window, update, outside, motion, border) = shape;
+            Farneback {
+                pyr_scale,
+                levels,
+                winsize,
+                iterations: if window == Window::Box && update != Update::Flow { 1 } else { iterations },
+                poly_n,
+                poly_sigma,
+                window,
+                update,
+                outside,
+                motion,
+                border,
+            }
         },
     )
 }

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use viewsphere::eval::flow_error;
-use viewsphere::flow::{Farneback, FarnebackTv, Window};
+use viewsphere::flow::{Farneback, FarnebackTv, Motion, Window};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane};
 use viewsphere::io::{flo, picture};
 
@@ -226,5 +226,31 @@ fn increments_err_less() {
         let [light_px, _] = pair.figures[0];
         println!("{}: {:.4} px, {:.3}°; OpenCV's {light_px} px", pair.name, error.aee_px, error.aae_deg);
         assert!(!(error.aee_px > share * light_px), "{}: {} px", pair.name, error.aee_px);
+    }
+}
+
+/// Farnebäck's paper has 2.08° for an affine motion and three iterations on this sequence, without its sky. The flow leads back
+/// from frame 9 to frame 8, whose negative is compared. Measured are 2.00° on the CPU; a constant motion has 2.79°.
+#[test]
+fn an_affine_motion_errs_no_more_than_in_the_paper() {
+    let Some(folder) = sets() else { return };
+    let images = ["09", "08"].map(|number| gray(&folder.join(format!("yosemite/derived_yos{number}.png"))));
+    let truth = flo::read(folder.join("yosemite/derived_flow09.flo")).unwrap();
+    let mask = MASK.map(|file| mask(&folder.join(file)));
+    let gpu = need::gpu();
+    for on in [Some(On::Cpu), gpu.as_ref().map(On::Gpu)].into_iter().flatten() {
+        let error = |motion: Motion| {
+            let mut found = flow(on, &Farneback { motion, ..Farneback::affine() }, images.each_ref(), None);
+            found.data.iter_mut().for_each(|d| *d = d.map(|d| -d));
+            flow_error(&truth, &found, mask.as_ref()).unwrap().aae_deg
+        };
+        let [affine, constant] = [error(Motion::Affine), error(Motion::Constant)];
+        println!("{}: {affine:.3}°, with a constant motion {constant:.3}°", on.name());
+        assert!(affine <= 2.08, "{}: {affine}°", on.name());
+        assert!(
+            constant > 2.08,
+            "{}: a constant motion errs by {constant}°, so that the bound tells nothing",
+            on.name()
+        );
     }
 }

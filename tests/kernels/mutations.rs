@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, binomial, cast, cell_confidence, cell_mean, cells, compare, confidence, downsample_flow,
-    expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations, links, looming, luma, misfit,
-    nonlocal, normal_equations, normalized_expansion_x, normalized_expansion_y, premultiply, remap,
-    resample_x, resample_y, residual, robust_equations, rotational_flow, sectors, sensor, shade,
-    slope_weights, smoothness, solve, solve_increment, spherical_flow, sweep, undistort_map, unweight,
-    upsample, warp, weighted_normal_equations, weighted_robust_equations, window_y,
+    ALL, affine_columns, binomial, cast, cell_confidence, cell_mean, cells, compare, confidence,
+    downsample_flow, expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations, links,
+    looming, luma, misfit, nonlocal, normal_equations, normalized_expansion_x, normalized_expansion_y,
+    premultiply, remap, resample_x, resample_y, residual, robust_equations, rotational_flow, sectors, sensor,
+    shade, slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, sweep,
+    undistort_map, unweight, upsample, warp, weighted_normal_equations, weighted_robust_equations, window_y,
 };
 
 use crate::need;
@@ -76,6 +76,17 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&solve_increment::KERNEL, "so_far[row + stride]", "so_far[row]"),
     (&solve_increment::KERNEL, "2u * min(y, params.height - 1u) * stride", "min(y, params.height - 1u) * stride"),
     (&solve_increment::KERNEL, "params.regular", "1e-3"),
+    (&normalized_expansion_y::KERNEL, "vec4f(params.outside)", "vec4f(1.0)"),
+    (&normalized_expansion_x::KERNEL, "columns < vec4i(i32(params.width))", "columns < vec4i(i32(params.width + 3u) / 4 * 4)"),
+    (&affine_columns::KERNEL, "let w_yy = w_y * t", "let w_yy = w_y * abs(t)"),
+    (&affine_columns::KERNEL, "y >= 0 && ", ""),
+    (&affine_columns::KERNEL, "first[3] += w_y * q_x", "first[3] += w_1 * q_x"),
+    (&solve_affine::KERNEL, "column < i32(params.width);", "column <= i32(params.width);"),
+    (&solve_affine::KERNEL, "g_xy += w_x * first", "g_xy += w_1 * first"),
+    (&solve_affine::KERNEL, "r_2.b.x / r_3.b.x", "r_2.b.x / r_2.b.x"),
+    (&solve_affine::KERNEL, "r_1.q - r_1.a.x * u", "r_1.q"),
+    (&solve_affine::KERNEL, "g_1.x + r", "g_1.x"),
+    (&solve_affine::KERNEL, "params.added * so_far[at + stride + x]", "so_far[at + stride + x]"),
     (&upsample::KERNEL, "params.channels * id.y", "2u * id.y"),
     (&robust_equations::KERNEL, "kappa * vec2f", "1.01 * kappa * vec2f"),
     (&robust_equations::KERNEL, "(a.y + b.y) * f.y", "(a.y + b.y) * f.x"),

@@ -1,13 +1,14 @@
 //! The steps of a pair of frames: on each level, coarse to fine, the equations, their average and their solution.
 
-use super::{Farneback, Outside, Update, Window};
+use super::{Farneback, Motion, Outside, Update, Window};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::expansions::{Expansion, Expansions};
 use crate::flow::{Level, Wanted};
-use crate::kernels::{
-    solve_increment, weighted_normal_equations, confidence, normal_equations, residual, robust_equations, weighted_robust_equations, solve, tables, window_y,
-};
 use crate::frame::Size;
+use crate::kernels::{
+    affine_columns, confidence, normal_equations, residual, robust_equations, solve, solve_affine, solve_increment, tables,
+    weighted_normal_equations, weighted_robust_equations, window_y,
+};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The share of its Hessian by which an expansion is continued to a place between pixels, with normalised equations.
@@ -16,6 +17,9 @@ const KAPPA: f32 = 0.3;
 const FLOOR: f32 = 0.04;
 /// What is added to the determinant of a window's normalised equations.
 const REGULAR: f32 = 1e-6;
+
+/// What is added to the diagonal of the normal matrix of an affine motion, and of that from normalised equations.
+const AFFINE_REGULAR: [f32; 2] = [1e-3, 1e-6];
 
 /// The buffers of this part of the plan.
 pub(super) struct Displacement {
@@ -33,6 +37,8 @@ pub(super) struct Displacement {
     window_x: BufId,
     equations: BufId,
     columns: BufId,
+    /// The columns' moments, if the motion is affine.
+    moments: Option<BufId>,
     evidence: Option<Evidence>,
 }
 
@@ -47,7 +53,8 @@ impl Displacement {
     pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level], wanted: Wanted) -> Self {
         let finest = levels[0].size;
         let adds = config.update != Update::Flow;
-        let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, adds);
+        let affine = config.motion == Motion::Affine;
+        let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, adds || affine);
         let window = tables::window(config.winsize, config.window == Window::Gaussian);
         let radius = window.len() / 2;
         Self {
@@ -62,6 +69,9 @@ impl Displacement {
             window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
             columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
+            moments: affine.then(|| {
+                bufs.computed("moments of columns", Shape::planar(finest, affine_columns::CHANNELS))
+            }),
             evidence: wanted.confidence.then(|| Evidence {
                 certainty: (!wanted.certainty)
                     .then(|| bufs.constant("full certainty", vec![1.0; Shape::planar(finest, 1).len()])),
@@ -105,6 +115,9 @@ impl Displacement {
         let (width, height) = (size.width, size.height);
         let five = Shape::planar(size, 5);
         steps.push(self.equations(level.size, label, [first, second], so_far));
+        if let Some(moments) = self.moments {
+            return self.solve_affine(steps, iteration, moments);
+        }
         steps.push(Step::new(
             &window_y::KERNEL,
             label.clone(),
@@ -126,6 +139,29 @@ impl Displacement {
                 Step::new(&solve_increment::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
             }
         });
+    }
+
+    /// The steps that average the equations for an affine motion, and solve them.
+    fn solve_affine(&self, steps: &mut Vec<Step>, iteration: &Iteration, moments: BufId) {
+        let Iteration { level, label, so_far, flow, .. } = iteration;
+        let (size, radius, step) = (level.size, self.radius, 1.0 / self.radius as f32);
+        let (width, height) = (size.width, size.height);
+        steps.push(Step::new(
+            &affine_columns::KERNEL,
+            label.clone(),
+            affine_columns::Params { width, height, radius, step },
+            &[self.equations, self.window_y],
+            &[(moments, Shape::planar(size, affine_columns::CHANNELS))],
+        ));
+        let regular = AFFINE_REGULAR[usize::from(self.normalized)];
+        let added = if self.adds { 1.0 } else { 0.0 };
+        steps.push(Step::new(
+            &solve_affine::KERNEL,
+            label.clone(),
+            solve_affine::Params { width, height, radius, step, regular, added },
+            &[moments, self.window_y, *so_far],
+            &[(*flow, Shape::planar(size, 2))],
+        ));
     }
 
     /// The step that sets up each pixel's equations.

@@ -11,7 +11,7 @@ use super::parameter::within;
 use super::{Estimator, Evidence, Stages, Wanted, levels};
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::plan::{BufId, Bufs, Step};
+use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// The window within which a pixel's neighbours are assumed to move alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +43,29 @@ pub enum Update {
     /// ([`robust_equations`](crate::kernels::robust_equations), without robust weights), and expansions between pixels are
     /// continued along their Hessians. The error on public pairs is below that of OpenCV's DIS medium. Levels go down to a
     /// shorter side of 24 pixels. With more than one iteration, [`Window::Box`] is an error, as for increments.
+    Normalized,
+}
+
+/// The model of the motion within the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Motion {
+    /// All neighbours move alike.
+    Constant,
+    /// The motion is an affine function of the place: six unknowns in place of two. A wide window then follows slopes of the
+    /// flow, as those of the ground. Neighbours outside the image have no weight. It takes about four times the time of a
+    /// constant motion.
+    Affine,
+}
+
+/// The treatment of the neighbourhoods that the image's border cuts off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Border {
+    /// The border's pixels are repeated outside, as in OpenCV.
+    Replicate,
+    /// Pixels outside have no weight: normalised convolution with a certainty of 0 there (Farnebäck's paper, section 2). It
+    /// takes about twice the time of the plain expansion.
     Normalized,
 }
 
@@ -86,6 +109,10 @@ pub struct Farneback {
     pub update: Update,
     /// The treatment of pixels outside the second frame.
     pub outside: Outside,
+    /// The model of the motion within the window.
+    pub motion: Motion,
+    /// The treatment of neighbourhoods that the image's border cuts off.
+    pub border: Border,
 }
 
 impl Default for Farneback {
@@ -100,6 +127,8 @@ impl Default for Farneback {
             window: Window::Box,
             update: Update::Flow,
             outside: Outside::First,
+            motion: Motion::Constant,
+            border: Border::Replicate,
         }
     }
 }
@@ -131,6 +160,20 @@ impl Farneback {
             ..Self::default()
         }
     }
+
+    /// The method of the 2003 paper: three iterations of an affine motion in a Gaussian window of about 39 px with a standard
+    /// deviation of 6 px, expansions of 11 px, and normalised convolution at the border. Levels are beyond the paper.
+    pub fn affine() -> Self {
+        Self {
+            winsize: 45,
+            poly_sigma: 1.1,
+            window: Window::Gaussian,
+            outside: Outside::Nothing,
+            motion: Motion::Affine,
+            border: Border::Normalized,
+            ..Self::default()
+        }
+    }
 }
 
 impl Estimator for Farneback {
@@ -155,13 +198,18 @@ impl Estimator for Farneback {
             Update::Flow | Update::Increment => levels(size, self.pyr_scale, self.levels),
             Update::Normalized => levels_down_to(size, self.pyr_scale, self.levels, NORMALIZED_SMALLEST),
         };
+        let certain = (self.border == Border::Normalized && !wanted.certainty)
+            .then(|| bufs.constant("full certainty of the frame", vec![1.0; Shape::planar(size, 1).len()]));
+        let wanted = Wanted { certainty: wanted.certainty || certain.is_some(), ..wanted };
         Box::new(FarnebackStages {
+            certain,
             expansions: Expansions::new(
                 bufs,
                 Expanded {
                     poly_n: self.poly_n,
                     poly_sigma: self.poly_sigma,
                     unsmoothed: self.update == Update::Normalized,
+                    outside: if self.border == Border::Normalized { 0.0 } else { 1.0 },
                     ..Expanded::default()
                 },
                 size,
@@ -175,13 +223,15 @@ impl Estimator for Farneback {
 
 /// The buffers and steps of the method.
 struct FarnebackStages {
+    /// A certainty of 1 for frames without one, if borders need it.
+    certain: Option<BufId>,
     expansions: Expansions,
     displacement: Displacement,
 }
 
 impl Stages for FarnebackStages {
     fn ingest(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
-        self.expansions.steps(gray, certainty, slot)
+        self.expansions.steps(gray, certainty.or(self.certain), slot)
     }
 
     fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {

@@ -1,6 +1,6 @@
 //! Farnebäck's parameters by name.
 
-use super::{Farneback, Outside, Update, Window};
+use super::{Border, Farneback, Motion, Outside, Update, Window};
 use crate::error::Result;
 use crate::flow::parameter::{Choice, Parameter, Parameters, choice_name, choose, read, wrong};
 
@@ -8,6 +8,9 @@ const WINDOWS: [(&str, Window); 2] = [("box", Window::Box), ("gaussian", Window:
 const UPDATES: [(&str, Update); 3] =
     [("flow", Update::Flow), ("increment", Update::Increment), ("normalized", Update::Normalized)];
 const OUTSIDES: [(&str, Outside); 2] = [("first", Outside::First), ("nothing", Outside::Nothing)];
+
+const MOTIONS: [(&str, Motion); 2] = [("constant", Motion::Constant), ("affine", Motion::Affine)];
+const BORDERS: [(&str, Border); 2] = [("replicate", Border::Replicate), ("normalized", Border::Normalized)];
 
 const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
     Parameter { name, value_name, help, choices: &[] }
@@ -57,6 +60,22 @@ impl Parameters for Farneback {
                 ("nothing", "Leave the pixel out: the window's other pixels decide"),
             ],
         ),
+        choice(
+            "motion",
+            "Model of the motion within the window",
+            &[
+                ("constant", "All neighbours move alike, as in OpenCV"),
+                ("affine", "The motion is an affine function of the place: follows slopes of the flow in wide windows"),
+            ],
+        ),
+        choice(
+            "border",
+            "Treatment of expansions that the image's border cuts off",
+            &[
+                ("replicate", "Repeat the border's pixels, as in OpenCV"),
+                ("normalized", "Give pixels outside no weight (normalised convolution)"),
+            ],
+        ),
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "Half the default's work: 1 iteration, winsize 13"),
@@ -67,6 +86,11 @@ impl Parameters for Farneback {
             "Half the default's work and less error, except where there is no texture (as in a sky): 1 iteration of \
              normalized increments, Gaussian winsize 31, poly-n 3, poly-sigma 1, outside nothing",
         ),
+        (
+            "affine",
+            "The 2003 paper's: affine motion in a Gaussian winsize of 45, poly-sigma 1.1, outside nothing, border normalized; for \
+             smooth scenes",
+        ),
     ];
 
     fn preset(name: &str) -> Option<Self> {
@@ -75,6 +99,7 @@ impl Parameters for Farneback {
             "fast" => Some(Self::fast()),
             "accurate" => Some(Self::accurate()),
             "increment" => Some(Self::increment()),
+            "affine" => Some(Self::affine()),
             _ => None,
         }
     }
@@ -90,6 +115,8 @@ impl Parameters for Farneback {
             "window" => choice_name(&WINDOWS, self.window).to_owned(),
             "update" => choice_name(&UPDATES, self.update).to_owned(),
             "outside" => choice_name(&OUTSIDES, self.outside).to_owned(),
+            "motion" => choice_name(&MOTIONS, self.motion).to_owned(),
+            "border" => choice_name(&BORDERS, self.border).to_owned(),
             _ => return None,
         })
     }
@@ -105,6 +132,8 @@ impl Parameters for Farneback {
             "window" => self.window = choose(Self::LIST, &WINDOWS, name, value)?,
             "update" => self.update = choose(Self::LIST, &UPDATES, name, value)?,
             "outside" => self.outside = choose(Self::LIST, &OUTSIDES, name, value)?,
+            "motion" => self.motion = choose(Self::LIST, &MOTIONS, name, value)?,
+            "border" => self.border = choose(Self::LIST, &BORDERS, name, value)?,
             _ => return Err(wrong(Self::LIST, name, value)),
         }
         Ok(())

@@ -63,6 +63,7 @@ impl FarnebackTvStages {
             unsmoothed: true,
             skip: finest,
             kept_images: nonlocal,
+            outside: 1.0,
         };
         let own = levels[finest].size;
         let [one, two, five] = [1, 2, 5].map(|channels| Shape::planar(own, channels));
