@@ -156,6 +156,7 @@
 //! | plans | [`plan`] | a frame's computation as data: buffers, steps and ports |
 //! | executors | [`gpu`], [`cpu`] | both run any plan |
 //! | kernels | [`kernel`], [`kernels`] | the per-pixel computations, each in WGSL and in Rust |
+//! | journals | `journal` | results of many jobs in a file that survives an interruption (features `io` and `serde`) |
 //! | files | `io` | images, videos, flow fields, cameras, gyro logs (feature `io`) |
 //! | plain types | [`frame`], [`camera`], [`imu`], [`error`] | frames, cameras, rotations from a gyro, errors |
 //!
@@ -218,11 +219,15 @@ pub mod engine;
 pub mod error;
 pub mod eval;
 pub mod flow;
+#[cfg(feature = "io")]
+mod fnv;
 pub mod frame;
 pub mod gpu;
 pub mod imu;
 #[cfg(feature = "io")]
 pub mod io;
+#[cfg(all(feature = "io", feature = "serde"))]
+pub mod journal;
 pub mod kernel;
 pub mod kernels;
 pub mod live;

@@ -50,6 +50,7 @@ Examples:
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
   viewsphere fly --world forest --seed 7             through a simulated world, steered by what the view says
   viewsphere campaign --worlds wall,city --seeds 0..100    how often the goal is reached
+  viewsphere eval --data middlebury/                 the errors of every algorithm
   viewsphere devices                                 the GPU adapters and the CPU"
 )]
 struct Cli {
@@ -66,7 +67,7 @@ enum Command {
     Simulate(Box<simulate::Simulate>),
     Undistort(Box<undistort::Undistort>),
     Crosscheck(Box<crosscheck::Crosscheck>),
-    Eval(eval::Eval),
+    Eval(Box<eval::Eval>),
     Bench(Box<bench::Bench>),
     Devices(devices::Devices),
     Demo(Box<demo::Demo>),

@@ -1,6 +1,7 @@
 //! Errors of a flow field against the ground truth, as in Baker et al., "A Database and Evaluation Methodology for
 //! Optical Flow", IJCV 92 (2011), section 4.
 
+use super::Tally;
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Plane, Size};
 
@@ -44,35 +45,13 @@ pub fn flow_error(truth: &FlowField, estimate: &FlowField, mask: Option<&Plane>)
         mask.validate()?;
         check_size("mask", mask.size, truth.size)?;
     }
-    let (mut known, mut over_1, mut over_3) = (0_usize, 0_usize, 0_usize);
-    let (mut endpoint, mut angular) = (Moments::default(), Moments::default());
+    let mut tally = Tally::default();
     for (i, (&a, &b)) in truth.data.iter().zip(&estimate.data).enumerate() {
-        if !FlowField::is_known(a) || !mask.is_none_or(|mask| mask.data[i] > 0.5) {
-            continue;
-        }
-        known += 1;
-        if FlowField::is_known(b) {
-            let distance = distance(a, b);
-            endpoint.add(distance);
-            angular.add(angular_error_deg(a, b));
-            over_1 += usize::from(distance > 1.0);
-            over_3 += usize::from(distance > 3.0);
+        if FlowField::is_known(a) && mask.is_none_or(|mask| mask.data[i] > 0.5) {
+            tally.add(a, b);
         }
     }
-    let pixels = endpoint.count;
-    // 0/0 is NaN, the documented value where nothing was compared.
-    let share = |part: usize, whole: usize| part as f64 / whole as f64;
-    Ok(FlowError {
-        aee_px: endpoint.mean(),
-        aee_std: endpoint.variance().sqrt(),
-        aae_deg: angular.mean(),
-        aae_std_deg: angular.variance().sqrt(),
-        rmse_px: (endpoint.mean().powi(2) + endpoint.variance()).sqrt(),
-        r1: share(over_1, pixels),
-        r3: share(over_3, pixels),
-        density: share(pixels, known),
-        pixels,
-    })
+    Ok(tally.error())
 }
 
 /// The endpoint error of every pixel, px; NaN where either field is unknown.
@@ -98,47 +77,22 @@ pub fn angular_error_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
     cross.atan2(u * s + v * t + 1.0).to_degrees()
 }
 
-fn distance(a: [f32; 2], b: [f32; 2]) -> f64 {
+/// The endpoint error, px.
+pub(super) fn distance(a: [f32; 2], b: [f32; 2]) -> f64 {
     (f64::from(a[0]) - f64::from(b[0])).hypot(f64::from(a[1]) - f64::from(b[1]))
 }
 
-fn check(a: &FlowField, b: &FlowField) -> Result<()> {
+pub(super) fn check(a: &FlowField, b: &FlowField) -> Result<()> {
     a.validate()?;
     b.validate()?;
     check_size("flow field", b.size, a.size)
 }
 
-fn check_size(what: &str, found: Size, expected: Size) -> Result<()> {
+pub(super) fn check_size(what: &str, found: Size, expected: Size) -> Result<()> {
     if found == expected {
         return Ok(());
     }
     Err(Error::SizeMismatch { what: what.to_owned(), found, expected })
-}
-
-/// Mean and variance in one pass (Welford 1962), which does not suffer the cancellation of the difference of two
-/// sums.
-#[derive(Default)]
-struct Moments {
-    count: usize,
-    mean: f64,
-    squares: f64,
-}
-
-impl Moments {
-    fn add(&mut self, value: f64) {
-        self.count += 1;
-        let before = value - self.mean;
-        self.mean += before / self.count as f64;
-        self.squares += before * (value - self.mean);
-    }
-
-    fn mean(&self) -> f64 {
-        if self.count == 0 { f64::NAN } else { self.mean }
-    }
-
-    fn variance(&self) -> f64 {
-        self.squares / self.count as f64
-    }
 }
 
 #[cfg(test)]

@@ -28,5 +28,6 @@ pub use crate::atomic_file::{check_creatable, check_writable, remove, write_atom
 pub use flow_file::{read_flow, write_flow};
 pub use frames::Frames;
 pub use raw::RawReader;
+pub(crate) use read::read_file;
 pub use y4m::Y4mReader;
 pub use y4m_write::Y4mWriter;

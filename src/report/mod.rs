@@ -14,6 +14,9 @@ mod divergence;
 #[cfg(feature = "sim")]
 mod divergence_strip;
 mod draw;
+mod error_map;
+#[cfg(feature = "io")]
+mod eval;
 #[cfg(feature = "sim")]
 pub mod flight;
 mod font;
@@ -25,9 +28,11 @@ mod footprint;
 )]
 mod html;
 mod overlay;
-#[cfg(feature = "sim")]
+#[cfg(any(feature = "io", feature = "sim"))]
+#[cfg_attr(not(feature = "sim"), allow(dead_code, reason = "flights use all of it"))]
 mod plot;
 mod rectified;
+mod thin;
 
 pub use arrows::arrows;
 pub use campaign::{CampaignRow, campaign_page};
@@ -39,4 +44,8 @@ pub use demo::{DemoFlight, DemoPair, DemoReport};
 pub use divergence::{FULL_DIVERGENCE_HZ, diverging};
 #[cfg(feature = "sim")]
 pub use divergence_strip::divergence_strip;
+pub use error_map::{ERROR_COLOURS, error_map};
+#[cfg(feature = "io")]
+pub use eval::{EvalCurves, EvalPage, EvalPair, EvalSet, EvalTable};
 pub use overlay::Overlay;
+pub use thin::thinned;

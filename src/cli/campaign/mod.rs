@@ -19,10 +19,9 @@ use super::{Outcome, input, print};
 use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
+use crate::journal::{Configuration, Opened, Shard};
 use crate::sim::CourseKind;
-use crate::sim::campaign::{
-    Campaign as Plan, Configuration, Ended, Faults, Job, Journal, Opened, Results, Shard, fly_all,
-};
+use crate::sim::campaign::{Campaign as Plan, Ended, Faults, Job, Journal, Results, fly_all};
 use crate::sim::flight::{self, MAX_LATENCY_FRAMES, Sensor};
 use crate::steer::{Danger, Policy};
 use crate::text::counted;

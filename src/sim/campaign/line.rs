@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::{Ended, Job, JobResult, Setting};
 use crate::error::{Error, Result};
+use crate::journal::problem;
 use crate::sim::flight::Summary;
 
 /// A result as written: the setting's parts as text, and either the reason of a failure or an outcome and its
@@ -57,14 +58,9 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<f64
     Option::<f64>::deserialize(deserializer).map(|number| number.unwrap_or(f64::NAN))
 }
 
-/// The message of a parse error, with the column alone: the parser sees each line as line 1.
-pub(super) fn problem(error: &serde_json::Error) -> String {
-    error.to_string().replace(" at line 1 column ", " at column ")
-}
-
 impl JobResult {
     /// The result as one line of JSON, without its end.
-    pub(super) fn to_line(&self) -> serde_json::Result<String> {
+    pub(super) fn as_line(&self) -> serde_json::Result<String> {
         serde_json::to_string(&self.line())
     }
 
@@ -92,7 +88,7 @@ impl JobResult {
     }
 
     /// The fields in which two results differ, with the values of each; `None` if they are the same.
-    pub(super) fn differences(&self, other: &Self) -> serde_json::Result<Option<[String; 2]>> {
+    pub(super) fn contradictions(&self, other: &Self) -> serde_json::Result<Option<[String; 2]>> {
         let members = |result: &Self| -> serde_json::Result<BTreeMap<String, Value>> {
             let flown = serde_json::to_value(result.line())?;
             let figures = flown.get("flown").and_then(Value::as_object).cloned().unwrap_or_default();
@@ -110,8 +106,8 @@ impl JobResult {
         Ok((!differ.is_empty()).then(|| both.each_ref().map(told)))
     }
 
-    /// Parses the output of [`JobResult::to_line`]; an error is the reason.
-    pub(super) fn from_line(text: &str) -> std::result::Result<Self, String> {
+    /// Parses the output of [`JobResult::as_line`]; an error is the reason.
+    pub(super) fn parsed(text: &str) -> std::result::Result<Self, String> {
         let line: Line = serde_json::from_str(text).map_err(|error| problem(&error))?;
         line.result().map_err(|error| error.to_string())
     }
@@ -190,26 +186,26 @@ mod tests {
                 let Ended::Flown(summary) = &mut result.ended else { unreachable!() };
                 summary.offset_m = Some([random.normal() * 1e-9, random.normal() * 1e9]);
             }
-            let line = result.to_line().unwrap();
+            let line = result.as_line().unwrap();
             assert!(!line.contains('\n'), "{line}");
-            assert_eq!(JobResult::from_line(&line).unwrap(), result, "{line}");
+            assert_eq!(JobResult::parsed(&line).unwrap(), result, "{line}");
         }
         let result = failed("wall", 3);
-        assert_eq!(JobResult::from_line(&result.to_line().unwrap()).unwrap(), result);
+        assert_eq!(JobResult::parsed(&result.as_line().unwrap()).unwrap(), result);
     }
 
     #[test]
     fn what_is_not_a_number_stays_so() {
-        let line = flown("wall", 1, Outcome::Crashed, f64::NAN).to_line().unwrap();
-        let back = JobResult::from_line(&line).unwrap();
+        let line = flown("wall", 1, Outcome::Crashed, f64::NAN).as_line().unwrap();
+        let back = JobResult::parsed(&line).unwrap();
         let Ended::Flown(summary) = &back.ended else { unreachable!() };
         assert!(summary.least_clearance_m.is_nan() && summary.time_s == 10.0);
-        assert_eq!(back.to_line().unwrap(), line);
+        assert_eq!(back.as_line().unwrap(), line);
     }
 
     #[test]
     fn what_is_no_result_says_why() {
-        let line = flown("wall", 1, Outcome::Reached, 1.0).to_line().unwrap();
+        let line = flown("wall", 1, Outcome::Reached, 1.0).as_line().unwrap();
         for (from, to, words) in [
             ("\"wall\"", "\"moon\"", "moon"),
             ("\"arc\"", "\"arch\"", "arch"),
@@ -221,7 +217,7 @@ mod tests {
         ] {
             let wrong = line.replacen(from, to, 1);
             assert_ne!(wrong, line);
-            let error = JobResult::from_line(&wrong).unwrap_err();
+            let error = JobResult::parsed(&wrong).unwrap_err();
             assert!(error.contains(words), "{error}");
         }
     }

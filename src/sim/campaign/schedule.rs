@@ -1,6 +1,4 @@
-use std::fmt;
 use std::ops::Range;
-use std::str::FromStr;
 
 use super::{Faults, Job, Setting};
 use crate::backend::Backend;
@@ -38,13 +36,6 @@ pub struct Campaign {
     pub seeds: Range<u64>,
 }
 
-/// A part of a campaign's jobs: `number` of `of`, counted from 1. As text `2/4`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    number: usize,
-    of: usize,
-}
-
 impl Campaign {
     /// The distinct settings, in the order of the lists.
     pub fn settings(&self) -> Vec<Setting> {
@@ -78,7 +69,7 @@ impl Campaign {
         all
     }
 
-    /// All jobs: the seeds of each setting one after the other, so that every [`Shard`] has a part of each setting.
+    /// All jobs: the seeds of each setting one after the other, so that every `journal::Shard` has a part of each setting.
     pub fn jobs(&self) -> Vec<Job> {
         let seeds =
             |setting: Setting| self.seeds.clone().map(move |seed| Job { setting: setting.clone(), seed });
@@ -110,42 +101,14 @@ impl Campaign {
     }
 }
 
-impl Shard {
-    /// All jobs.
-    pub const ALL: Self = Self { number: 1, of: 1 };
-
-    /// The shard's part of the jobs: every job is in exactly one shard.
-    pub fn part(self, jobs: Vec<Job>) -> Vec<Job> {
-        jobs.into_iter().skip(self.number - 1).step_by(self.of).collect()
-    }
-}
-
-impl FromStr for Shard {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let wrong = || Error::parameter("shard", format_args!("{text:?}"), "I/N with I from 1 to N");
-        let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-        let [number, of] = [number, of].map(|part| part.trim().parse::<usize>().ok());
-        match (number, of) {
-            (Some(number), Some(of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err(wrong()),
-        }
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.number, self.of)
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    #[cfg(all(feature = "io", feature = "serde"))]
+    use crate::journal::Shard;
 
     fn campaign() -> Campaign {
         Campaign {
@@ -188,6 +151,7 @@ mod tests {
         assert_eq!(twice.jobs(), once.jobs());
     }
 
+    #[cfg(all(feature = "io", feature = "serde"))]
     #[test]
     fn shards_hold_every_job_once_and_every_setting() {
         let all = campaign().jobs();
@@ -200,16 +164,6 @@ mod tests {
                 |jobs: &[Job]| jobs.iter().map(|job| job.setting.to_string()).collect::<BTreeSet<_>>();
             assert!(of > 7 || shards.iter().all(|shard| settings(shard).len() == 32));
         }
-    }
-
-    #[test]
-    fn what_is_no_shard_is_an_error() {
-        for text in ["", "1", "0/2", "3/2", "1/0", "a/b", "-1/2", "1/2/3"] {
-            let error = text.parse::<Shard>().unwrap_err().to_string();
-            assert!(error.contains("I/N"), "{error}");
-        }
-        assert_eq!("1/1".parse::<Shard>().unwrap(), Shard::ALL);
-        assert_eq!("2/4".parse::<Shard>().unwrap().to_string(), "2/4");
     }
 
     #[test]

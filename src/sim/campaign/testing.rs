@@ -21,7 +21,7 @@ fn job(world: &str, seed: u64) -> Job {
     Job { setting, seed }
 }
 
-pub(super) fn flown(world: &str, seed: u64, outcome: Outcome, least_clearance_m: f64) -> JobResult {
+pub(crate) fn flown(world: &str, seed: u64, outcome: Outcome, least_clearance_m: f64) -> JobResult {
     let summary = Summary {
         outcome,
         time_s: 10.0,
@@ -37,7 +37,7 @@ pub(super) fn flown(world: &str, seed: u64, outcome: Outcome, least_clearance_m:
     JobResult { job: job(world, seed), adapter: None, ended: Ended::Flown(summary) }
 }
 
-pub(super) fn failed(world: &str, seed: u64) -> JobResult {
+pub(crate) fn failed(world: &str, seed: u64) -> JobResult {
     let ended = Ended::Failed("too many surfaces".to_owned());
     JobResult { job: job(world, seed), adapter: None, ended }
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::fnv::Fnv1a;
 
 /// A fingerprint of a configuration and of this crate's version: 16 hexadecimal digits that differ if either differs.
 ///
@@ -13,7 +14,9 @@ use crate::error::{Error, Result};
 /// [`Error::Parameter`] for a value that JSON cannot represent, such as a map whose keys are not text.
 pub fn fingerprint(configuration: &impl Serialize) -> Result<String> {
     let text = format!("{} {}", env!("CARGO_PKG_VERSION"), canonical(configuration)?);
-    Ok(format!("{:016x}", fnv_1a(text.as_bytes())))
+    let mut hash = Fnv1a::default();
+    hash.add(text.as_bytes());
+    Ok(hash.text())
 }
 
 fn canonical(configuration: &impl Serialize) -> Result<String> {
@@ -24,14 +27,7 @@ fn canonical(configuration: &impl Serialize) -> Result<String> {
     Ok(value.to_string())
 }
 
-/// The 64-bit FNV-1a hash of G. Fowler, L. C. Noll and K.-P. Vo.
-fn fnv_1a(bytes: &[u8]) -> u64 {
-    bytes
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
-}
-
-#[cfg(test)]
+#[cfg(all(test, feature = "sim"))]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use std::collections::BTreeSet;
@@ -81,14 +77,6 @@ mod tests {
             }),
             Value::Array(list) => list.iter().for_each(|value| names(value, found)),
             _ => (),
-        }
-    }
-
-    #[test]
-    fn the_hash_is_fnv_1a() {
-        // The published hashes of these strings.
-        for (text, expected) in [("a", 0xaf63_dc4c_8601_ec8c), ("foobar", 0x8594_4171_f739_67e8)] {
-            assert_eq!(fnv_1a(text.as_bytes()), expected, "{text}");
         }
     }
 

@@ -1,37 +1,39 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use super::results::{json, line};
-use super::{Configuration, JobResult, Results};
+use super::{Configuration, Entry, Results};
 use crate::error::{Error, Result};
 
 /// A file to which one process appends results one by one. If that process is stopped at any moment, all lines but
 /// the last one are complete.
 #[derive(Debug)]
-pub struct Journal {
+pub struct Journal<T> {
     file: File,
     path: PathBuf,
+    of: PhantomData<T>,
 }
 
 /// An opened journal.
 #[derive(Debug)]
-pub struct Opened {
+pub struct Opened<T> {
     /// The journal, ready to append.
-    pub journal: Journal,
+    pub journal: Journal<T>,
     /// The results already in it.
-    pub results: Results,
+    pub results: Results<T>,
     /// Whether an incomplete last line was removed.
     pub repaired: bool,
 }
 
-impl Journal {
+impl<T: Entry> Journal<T> {
     /// Opens a journal of this configuration, or creates one together with its folder.
     ///
     /// # Errors
     /// [`Error::Io`], also if another process has it open; as in [`Results::read`]; [`Error::Format`] if it is of
     /// another version or configuration.
-    pub fn open(path: impl AsRef<Path>, configuration: &Configuration) -> Result<Opened> {
+    pub fn open(path: impl AsRef<Path>, configuration: &Configuration) -> Result<Opened<T>> {
         let path = path.as_ref();
         let wrong = |source| Error::io(path, source);
         if let Some(folder) = path.parent() {
@@ -42,7 +44,7 @@ impl Journal {
             TryLockError::WouldBlock => wrong(io::Error::other("another process is appending to it")),
             TryLockError::Error(source) => wrong(source),
         })?;
-        let mut journal = Self { file, path: path.to_owned() };
+        let mut journal = Self { file, path: path.to_owned(), of: PhantomData };
         // Read under the lock, when no other process appends to it.
         let mut text = Vec::new();
         journal.file.read_to_end(&mut text).map_err(wrong)?;
@@ -65,7 +67,7 @@ impl Journal {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn add(&mut self, result: &JobResult) -> Result<()> {
+    pub fn add(&mut self, result: &T) -> Result<()> {
         self.put(line(&self.path, result)?)
     }
 
@@ -74,11 +76,12 @@ impl Journal {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "sim"))]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::testing::{failed, flown};
     use super::*;
+    use crate::sim::campaign::JobResult;
+    use crate::sim::campaign::testing::{failed, flown};
     use crate::sim::flight::{FlightConfig, Outcome};
 
     fn configuration() -> Configuration {
@@ -91,7 +94,7 @@ mod tests {
 
     /// Creates a journal with the results of three flights.
     fn begun(path: &Path) -> String {
-        let mut opened = Journal::open(path, &configuration()).unwrap();
+        let mut opened: Opened<JobResult> = Journal::open(path, &configuration()).unwrap();
         assert!(!opened.repaired && opened.results.sorted().is_empty());
         (1..=3).for_each(|seed| opened.journal.add(&reached(seed)).unwrap());
         fs::read_to_string(path).unwrap()
@@ -105,7 +108,7 @@ mod tests {
         let ends: Vec<usize> = whole.match_indices('\n').map(|(end, _)| end + 1).collect();
         for cut in 0..=whole.len() {
             fs::write(&path, &whole[..cut]).unwrap();
-            let mut opened = Journal::open(&path, &configuration()).unwrap();
+            let mut opened: Opened<JobResult> = Journal::open(&path, &configuration()).unwrap();
             let lines = ends.iter().filter(|&&end| end <= cut).count();
             assert_eq!(opened.results.sorted().len(), lines.saturating_sub(1), "{cut}");
             assert_eq!(opened.repaired, cut > 0 && !ends.contains(&cut), "{cut}");
@@ -121,11 +124,14 @@ mod tests {
     fn what_failed_is_tried_again_and_then_counts_no_more() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.jsonl");
-        let mut opened = Journal::open(&path, &configuration()).unwrap();
+        let mut opened: Opened<JobResult> = Journal::open(&path, &configuration()).unwrap();
         opened.journal.add(&failed("wall", 1)).unwrap();
         opened.journal.add(&reached(1)).unwrap();
         drop(opened);
-        assert_eq!(Journal::open(&path, &configuration()).unwrap().results.sorted(), [&reached(1)]);
+        assert_eq!(
+            Journal::<JobResult>::open(&path, &configuration()).unwrap().results.sorted(),
+            [&reached(1)]
+        );
     }
 
     #[test]
@@ -137,7 +143,7 @@ mod tests {
         let other = Configuration::new(&base, "a large plane".to_owned()).unwrap();
         for text in [whole.clone(), whole[..whole.len() - 5].to_owned(), "something else".to_owned()] {
             fs::write(&path, &text).unwrap();
-            let error = Journal::open(&path, &other).unwrap_err().to_string();
+            let error = Journal::<JobResult>::open(&path, &other).unwrap_err().to_string();
             assert!(error.contains("results.jsonl"), "{error}");
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
         }
@@ -147,10 +153,10 @@ mod tests {
     fn two_processes_do_not_write_to_one_journal() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("results.jsonl");
-        let opened = Journal::open(&path, &configuration()).unwrap();
-        let error = Journal::open(&path, &configuration()).unwrap_err().to_string();
+        let opened: Opened<JobResult> = Journal::open(&path, &configuration()).unwrap();
+        let error = Journal::<JobResult>::open(&path, &configuration()).unwrap_err().to_string();
         assert!(error.contains("another process"), "{error}");
         drop(opened);
-        assert!(Journal::open(&path, &configuration()).is_ok());
+        assert!(Journal::<JobResult>::open(&path, &configuration()).is_ok());
     }
 }

@@ -1,0 +1,109 @@
+//! The tables as text and as CSV.
+
+use super::columns::{CLASSES, CONFIDENCE, Column, ERRORS, cell, filled};
+use crate::cli::print;
+use crate::eval::{Row, Table};
+use crate::text::counted;
+
+/// A set of more pairs has no table with a column for each.
+const MOST_PAIRS: usize = 8;
+
+/// The tables for a terminal.
+pub(super) fn text(table: &Table) -> String {
+    let mut text = format!(
+        "on {}; × is the geometric mean of ratios to {}\n",
+        table.adapters.join(" and "),
+        table.baseline
+    );
+    for set in table.sets.chunk_by(|a, b| a.set == b.set) {
+        let name = set[0].set.as_deref().unwrap_or_default();
+        text += &part(name, set);
+        let pairs: Vec<&Row> = table.pairs.iter().filter(|row| row.set == set[0].set).collect();
+        text += &by_pair(&pairs);
+    }
+    if table.sets.iter().any(|row| row.set != table.sets[0].set) {
+        text += &part("total", &table.total);
+    }
+    text
+}
+
+/// The tables of one set.
+fn part(name: &str, rows: &[Row]) -> String {
+    let pairs = rows.iter().map(|row| row.scored + row.failed).max().unwrap_or(0);
+    let mut text = format!("\n{name}, {}\n", counted(pairs, "pair"));
+    let rows: Vec<&Row> = rows.iter().collect();
+    text += &grid("run", &ERRORS, &rows);
+    text += &grid("AEE px by class", &CLASSES, &rows);
+    text + &grid("confidence", &CONFIDENCE, &rows)
+}
+
+fn grid(corner: &str, columns: &[Column], rows: &[&Row]) -> String {
+    let columns = filled(columns, rows);
+    if columns.is_empty() {
+        return String::new();
+    }
+    let heads = std::iter::once(corner).chain(columns.iter().map(|column| column.head));
+    let mut lines = vec![heads.map(str::to_owned).collect::<Vec<_>>()];
+    for row in rows {
+        let cells = columns.iter().map(|column| cell(row, column));
+        lines.push(std::iter::once(row.name()).chain(cells).collect());
+    }
+    print::table(&lines)
+}
+
+/// A column for each pair: mean endpoint error in pixels and mean angular error in degrees.
+fn by_pair(rows: &[&Row]) -> String {
+    let mut names: Vec<&str> = rows.iter().filter_map(|row| row.pair.as_deref()).collect();
+    names.dedup();
+    if !(2..=MOST_PAIRS).contains(&names.len()) {
+        return String::new();
+    }
+    let mut runs: Vec<String> = Vec::new();
+    for row in rows {
+        if !runs.contains(&row.name()) {
+            runs.push(row.name());
+        }
+    }
+    let mut lines =
+        vec![std::iter::once("AEE px / AAE °").chain(names.iter().copied()).map(str::to_owned).collect()];
+    for run in runs {
+        let figures = |pair: &&str| {
+            let row = rows.iter().find(|row| row.pair.as_deref() == Some(pair) && row.name() == run);
+            row.map_or_else(String::new, |row| {
+                format!("{} / {}", cell(row, &ERRORS[0]), cell(row, &ERRORS[2]))
+            })
+        };
+        let cells: Vec<String> = names.iter().map(figures).collect();
+        lines.push(std::iter::once(run).chain(cells).collect());
+    }
+    print::table(&lines)
+}
+
+/// All rows as comma-separated values below a header: pairs, then sets, then the total. `*` stands for all pairs or sets; an
+/// undefined figure is an empty cell.
+pub(super) fn csv(table: &Table) -> String {
+    let columns: Vec<&Column> = ERRORS.iter().chain(&CLASSES).chain(&CONFIDENCE).collect();
+    let names = columns.iter().map(|column| column.name);
+    let mut text =
+        ["set", "pair", "run", "backend", "pairs"].into_iter().chain(names).collect::<Vec<_>>().join(",")
+            + "\n";
+    for row in table.pairs.iter().chain(&table.sets).chain(&table.total) {
+        let quoted = |name: &Option<String>| {
+            let name = name.as_deref().unwrap_or("*");
+            let is_plain = !name.contains([',', '"', '\n', '\r']);
+            if is_plain { name.to_owned() } else { format!("\"{}\"", name.replace('"', "\"\"")) }
+        };
+        let keys = [
+            quoted(&row.set),
+            quoted(&row.pair),
+            row.run.clone(),
+            row.backend.clone(),
+            row.scored.to_string(),
+        ];
+        let figures = columns
+            .iter()
+            .map(|column| (column.value)(row).map(|value| value.to_string()).unwrap_or_default());
+        text += &(keys.into_iter().chain(figures).collect::<Vec<_>>().join(",") + "\n");
+    }
+    text
+}

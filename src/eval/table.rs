@@ -1,0 +1,192 @@
+//! Results added up: for each pair, for each data set, and in total.
+
+use super::{Class, PairResult, PairTime, Score};
+
+/// The results of some jobs, added up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// What computed the flow.
+    pub adapters: Vec<String>,
+    /// The run with which others are compared.
+    pub baseline: String,
+    /// One row for each pair and run.
+    pub pairs: Vec<Row>,
+    /// One row for each data set and run, over the set's pairs.
+    pub sets: Vec<Row>,
+    /// One row for each run, over all pairs.
+    pub total: Vec<Row>,
+}
+
+/// The figures of a run over some pairs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The data set; `None` for all.
+    pub set: Option<String>,
+    /// The pair; `None` for all.
+    pub pair: Option<String>,
+    /// The algorithm with its preset and parameters.
+    pub run: String,
+    /// `cpu` or `gpu`.
+    pub backend: String,
+    /// The pairs that the figures are over.
+    pub scored: usize,
+    /// The pairs that failed; no figure counts them.
+    pub failed: usize,
+    /// The errors over the pixels of all pairs.
+    pub score: Score,
+    /// The mean of the pairs' times; `None` if one was not measured.
+    pub time: Option<PairTime>,
+    /// The comparison with the baseline; `None` for figures that are undefined.
+    pub ratios: Ratios,
+}
+
+/// The geometric means of the ratios of a run's figures to the baseline's on the same backend, over the pairs that both
+/// have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Ratios {
+    /// Of the mean endpoint error.
+    pub aee: Option<f64>,
+    /// Of the mean angular error.
+    pub aae: Option<f64>,
+    /// Of the wall time.
+    pub time: Option<f64>,
+}
+
+impl Table {
+    /// The table of results. Without a `baseline` the first run in their order is that.
+    pub fn of(results: &[&PairResult], baseline: Option<&str>) -> Self {
+        let mut sorted = results.to_vec();
+        sorted.sort_by(|a, b| a.job.order(&b.job));
+        let mut adapters: Vec<String> = sorted.iter().map(|result| result.adapter.clone()).collect();
+        adapters.sort();
+        adapters.dedup();
+        let first = sorted.iter().map(|result| &result.job).min_by(|a, b| a.run_order(b));
+        let first = first.map_or_else(String::new, |job| job.run.clone());
+        let baseline = baseline.map_or(first, str::to_owned);
+        let rows = |results: &[&PairResult], set: Option<&str>, pair: Option<&str>| {
+            let mut by_run = results.to_vec();
+            by_run.sort_by(|a, b| a.job.run_order(&b.job));
+            let runs = by_run.chunk_by(|a, b| a.job.run_order(&b.job).is_eq());
+            runs.map(|own| Row::of(own, results, &baseline, set, pair)).collect::<Vec<_>>()
+        };
+        let (mut pairs, mut sets) = (Vec::new(), Vec::new());
+        for set in sorted.chunk_by(|a, b| a.job.set == b.job.set) {
+            let name = Some(set[0].job.set.as_str());
+            for pair in set.chunk_by(|a, b| a.job.pair == b.job.pair) {
+                pairs.extend(rows(pair, name, Some(&pair[0].job.pair)));
+            }
+            sets.extend(rows(set, name, None));
+        }
+        let total = rows(&sorted, None, None);
+        Self { adapters, baseline, pairs, sets, total }
+    }
+}
+
+impl Row {
+    /// The row of one run's results, of which there is at least one, among those of all runs on the same pairs.
+    fn of(
+        own: &[&PairResult],
+        all: &[&PairResult],
+        baseline: &str,
+        set: Option<&str>,
+        pair: Option<&str>,
+    ) -> Self {
+        let job = &own[0].job;
+        let scored: Vec<(&PairResult, &Score)> =
+            own.iter().filter_map(|result| Some((*result, result.score()?))).collect();
+        let mut sum = Score::default();
+        scored.iter().for_each(|(_, score)| sum.merge(score));
+        let base = |of: &PairResult| {
+            let is_base = |result: &&&PairResult| {
+                let job = &result.job;
+                (&job.set, &job.pair, &job.backend) == (&of.job.set, &of.job.pair, &of.job.backend)
+                    && job.run == baseline
+            };
+            all.iter().find(is_base).copied().filter(|result| result.score().is_some())
+        };
+        let couples: Vec<[&PairResult; 2]> =
+            scored.iter().filter_map(|(result, _)| Some([*result, base(result)?])).collect();
+        let mean = |figure: &dyn Fn(&PairResult) -> Option<f64>| geometric_mean(&couples, figure);
+        let all_pixels = |result: &PairResult| result.score()?.class(Class::All).map(|tally| tally.error());
+        Self {
+            set: set.map(str::to_owned),
+            pair: pair.map(str::to_owned),
+            run: job.run.clone(),
+            backend: job.backend.clone(),
+            scored: scored.len(),
+            failed: own.len() - scored.len(),
+            time: mean_time(&scored.iter().map(|(result, _)| result.time()).collect::<Vec<_>>()),
+            ratios: Ratios {
+                aee: mean(&|result| Some(all_pixels(result)?.aee_px)),
+                aae: mean(&|result| Some(all_pixels(result)?.aae_deg)),
+                time: mean(&|result| Some(result.time()?.wall_ms)),
+            },
+            score: sum,
+        }
+    }
+
+    /// The run's name, with its backend.
+    pub fn name(&self) -> String {
+        format!("{} on {}", self.run, self.backend)
+    }
+}
+
+/// The geometric mean of ratios; `None` without any, and if one is not a finite number over 0.
+fn geometric_mean(couples: &[[&PairResult; 2]], figure: &dyn Fn(&PairResult) -> Option<f64>) -> Option<f64> {
+    let mut logarithms = 0.0;
+    for [own, base] in couples {
+        let ratio = figure(own)? / figure(base)?;
+        logarithms += ratio.ln();
+    }
+    let mean = (logarithms / couples.len() as f64).exp();
+    (mean.is_finite() && mean > 0.0).then_some(mean)
+}
+
+fn mean_time(times: &[Option<PairTime>]) -> Option<PairTime> {
+    let times: Vec<PairTime> = times.iter().copied().collect::<Option<_>>()?;
+    let mean = |sum: f64| sum / times.len() as f64;
+    let processor_ms: Option<f64> = times.iter().map(|time| time.processor_ms).sum();
+    let wall_ms = mean(times.iter().map(|time| time.wall_ms).sum());
+    wall_ms.is_finite().then(|| PairTime { wall_ms, processor_ms: processor_ms.map(mean) })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::result::tests::{failed, result};
+    use super::*;
+
+    #[test]
+    fn rows_add_up_by_hand() {
+        let all = [
+            result("a", "1", "farneback:default", 1.0),
+            result("a", "2", "farneback:default", 4.0),
+            result("a", "1", "farneback-tv:fast", 0.5),
+            result("a", "2", "farneback-tv:fast", 0.5),
+            result("b", "1", "farneback:default", 2.0),
+            failed("b", "1", "farneback-tv:fast"),
+        ];
+        let table = Table::of(&all.iter().collect::<Vec<_>>(), None);
+        assert_eq!(table.baseline, "farneback:default");
+        assert_eq!((table.pairs.len(), table.sets.len(), table.total.len()), (6, 4, 2));
+        let aee = |row: &Row| row.score.class(Class::All).map(|tally| tally.error().aee_px);
+        let [base, tv, base_b, tv_b] = &table.sets[..] else { unreachable!() };
+        assert_eq!((aee(base), aee(tv), aee(base_b), aee(tv_b)), (Some(2.5), Some(0.5), Some(2.0), None));
+        // The square root of 1/2 × 1/8.
+        assert!((tv.ratios.aee.unwrap() - 0.25).abs() < 1e-9 && base.ratios.aee == Some(1.0));
+        assert_eq!((tv_b.scored, tv_b.failed, tv_b.ratios, tv_b.time), (0, 1, Ratios::default(), None));
+        assert_eq!(table.total[0].time, Some(PairTime { wall_ms: 4.0, processor_ms: Some(8.0) }));
+        assert_eq!((table.total[1].scored, table.total[1].failed), (2, 1));
+        assert!((table.total[1].ratios.aee.unwrap() - 0.25).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_baseline_without_error_or_results_gives_no_ratio() {
+        let all = [result("a", "1", "farneback:default", 0.0), result("a", "1", "farneback-tv:fast", 0.5)];
+        let refs: Vec<&PairResult> = all.iter().collect();
+        assert_eq!(Table::of(&refs, None).sets[1].ratios.aee, None);
+        assert_eq!(Table::of(&refs, Some("none")).sets[0].ratios, Ratios::default());
+        assert!(Table::of(&[], None).sets.is_empty());
+    }
+}
