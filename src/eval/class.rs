@@ -4,10 +4,11 @@ use super::GroundTruth;
 use super::boundaries::{Near, depth_edges, motion_edges, thin_things};
 use super::texture::textured;
 use crate::error::Result;
-use crate::frame::{FlowField, Frame};
+use crate::frame::{FlowField, Frame, Size};
 use crate::named::named;
 
-/// A class of pixels. All but [`Class::Sky`] leave out the sky, which has a true flow but no texture.
+/// A class of pixels. All but [`Class::Sky`] leave out the sky, which has a true flow but no texture. Those that need a depth
+/// leave out what leaves the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Class {
@@ -33,6 +34,10 @@ pub enum Class {
     Occluded,
     /// It does.
     Visible,
+    /// The true flow leads to a place between the centres of the second frame's pixels.
+    Inside,
+    /// It leads out of the second frame.
+    Leaving,
     /// Within 3 px along the row of a depth edge: neighbours in a row whose depths have a ratio over 1.3.
     DepthEdge,
     /// Inside a thin thing: from 2 to 6 px along the row between depth edges, nearer than what is on both sides by a ratio
@@ -48,7 +53,7 @@ named!(Class, "class");
 
 impl Class {
     /// All classes, in the order of tables.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::All,
         Self::Slow,
         Self::Medium,
@@ -60,6 +65,8 @@ impl Class {
         Self::Textured,
         Self::Occluded,
         Self::Visible,
+        Self::Inside,
+        Self::Leaving,
         Self::DepthEdge,
         Self::Thin,
         Self::Calm,
@@ -80,6 +87,8 @@ impl Class {
             Self::Textured => "textured",
             Self::Occluded => "occluded",
             Self::Visible => "visible",
+            Self::Inside => "inside",
+            Self::Leaving => "leaving",
             Self::DepthEdge => "depth-edge",
             Self::Thin => "thin",
             Self::Calm => "calm",
@@ -87,14 +96,14 @@ impl Class {
         }
     }
 
-    const fn bit(self) -> u16 {
+    const fn bit(self) -> u32 {
         1 << self as u16
     }
 }
 
 /// The classes of every pixel of a pair.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Classes(Vec<u16>);
+pub struct Classes(Vec<u32>);
 
 impl Classes {
     /// Finds the classes of a pair from its first frame and its truth. A pixel whose true flow is unknown has none.
@@ -113,8 +122,9 @@ impl Classes {
             if !FlowField::is_known(uv) {
                 return 0;
             }
+            let is_inside = is_inside(i, uv, truth.flow.size);
             if sky(i) {
-                return Class::Sky.bit();
+                return if is_inside { Class::Sky.bit() } else { 0 };
             }
             let speed = match f64::from(uv[0]).hypot(f64::from(uv[1])) {
                 ..10.0 => Class::Slow,
@@ -127,13 +137,15 @@ impl Classes {
                 Near::Beyond => Class::Far,
             };
             let texture = if texture[i] { Class::Textured } else { Class::Flat };
-            let mut bits = Class::All.bit() | speed.bit() | edge.bit() | texture.bit();
+            let place = if is_inside { Class::Inside } else { Class::Leaving };
+            let mut bits =
+                [Class::All, speed, edge, texture, place].iter().fold(0, |bits, class| bits | class.bit());
             if let Some(occluded) = &truth.occluded {
                 bits |= if occluded[i] { Class::Occluded } else { Class::Visible }.bit();
             }
-            if let Some((edges, thin)) = &jumps {
+            if let Some((edges, thin)) = jumps.as_ref().filter(|_| is_inside) {
                 let found = [(edges[i], Class::DepthEdge), (thin[i], Class::Thin)];
-                bits |= found.iter().map(|(is, class)| if *is { class.bit() } else { 0 }).sum::<u16>();
+                bits |= found.iter().map(|(is, class)| if *is { class.bit() } else { 0 }).sum::<u32>();
                 bits |= if edges[i] || thin[i] { 0 } else { Class::Calm.bit() };
             }
             bits
@@ -152,11 +164,18 @@ impl Classes {
     }
 }
 
+/// Whether the flow of a pixel leads to a place between the centres of an image's pixels.
+fn is_inside(pixel: usize, [u, v]: [f32; 2], size: Size) -> bool {
+    let (width, height) = (size.width as usize, size.height as usize);
+    let within = |at: usize, by: f32, count: usize| (0.0..=(count - 1) as f32).contains(&(at as f32 + by));
+    within(pixel % width, u, width) && within(pixel / width, v, height)
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::frame::{PixelFormat, Plane, Size, UNKNOWN_FLOW};
+    use crate::frame::{PixelFormat, Plane, UNKNOWN_FLOW};
 
     fn classes(flow: Vec<[f32; 2]>, occluded: Option<Vec<bool>>, depth_m: Option<Vec<f32>>) -> Vec<String> {
         let size = Size::new(flow.len() as u32, 1);
@@ -175,10 +194,10 @@ mod tests {
         let occluded = vec![true, false, false, false, false];
         let found = classes(flow, Some(occluded), None);
         let expected = [
-            "slow edge flat occluded",
-            "medium edge flat visible",
-            "medium edge flat visible",
-            "fast edge flat visible",
+            "slow edge flat occluded leaving",
+            "medium edge flat visible leaving",
+            "medium edge flat visible leaving",
+            "fast edge flat visible leaving",
         ];
         for (found, expected) in found.iter().zip(expected) {
             assert_eq!(*found, format!("all {expected}"));
@@ -190,7 +209,21 @@ mod tests {
     fn the_sky_is_a_class_of_its_own() {
         let found = classes(vec![[0.0; 2]; 3], None, Some(vec![f32::INFINITY, 5.0, f32::NAN]));
         assert_eq!(found[0], "sky");
-        assert_eq!(found[1], "all slow far flat depth-edge");
+        assert_eq!(found[1], "all slow far flat inside depth-edge");
+    }
+
+    #[test]
+    fn what_leaves_the_frame_is_in_no_class_of_depth() {
+        let still = [0.0; 2];
+        let flow = vec![[-0.01, 0.0], still, [1.0, 0.0], [0.5, 0.0]];
+        let found = classes(flow, None, Some(vec![5.0, 5.0, 5.0, f32::INFINITY]));
+        assert_eq!(found[0], "all slow edge flat leaving");
+        assert!(
+            found[1].ends_with("inside depth-edge") && found[2].ends_with("inside depth-edge"),
+            "{found:?}"
+        );
+        // The sky that leaves counts nowhere.
+        assert_eq!(found[3], "");
     }
 
     #[test]

@@ -39,4 +39,6 @@ pub use sparsification::{STEPS, Sparsification};
 #[cfg(all(feature = "io", feature = "serde"))]
 pub use table::{Ratios, Row, Table};
 pub use tally::{Moments, Tally};
+#[cfg(feature = "cli")]
+pub(crate) use texture::gray_levels;
 pub use truth::GroundTruth;

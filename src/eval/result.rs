@@ -58,7 +58,7 @@ impl Job {
         format!("{}/{}/{}/{}", self.set, self.pair, self.run, self.backend)
     }
 
-    /// The order of jobs: by set and pair, then by [`run_order`].
+    /// The order of jobs: by set and pair, then by [`Job::run_order`].
     pub fn order(&self, other: &Self) -> Ordering {
         let place = |job: &Self| (job.set.clone(), job.pair.clone());
         place(self).cmp(&place(other)).then_with(|| self.run_order(other))

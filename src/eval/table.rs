@@ -1,6 +1,6 @@
 //! Results added up: for each pair, for each data set, and in total.
 
-use super::{Class, PairResult, PairTime, Score};
+use super::{Class, Job, PairResult, PairTime, Score};
 
 /// The results of some jobs, added up.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Row {
     pub set: Option<String>,
     /// The pair; `None` for all.
     pub pair: Option<String>,
+    /// The run's name, with its backend if the table has several.
+    pub name: String,
     /// The algorithm with its preset and parameters.
     pub run: String,
     /// `cpu` or `gpu`.
@@ -64,11 +66,17 @@ impl Table {
         let first = sorted.iter().map(|result| &result.job).min_by(|a, b| a.run_order(b));
         let first = first.map_or_else(String::new, |job| job.run.clone());
         let baseline = baseline.map_or(first, str::to_owned);
+        let one_backend = sorted.iter().all(|result| result.job.backend == sorted[0].job.backend);
         let rows = |results: &[&PairResult], set: Option<&str>, pair: Option<&str>| {
             let mut by_run = results.to_vec();
             by_run.sort_by(|a, b| a.job.run_order(&b.job));
             let runs = by_run.chunk_by(|a, b| a.job.run_order(&b.job).is_eq());
-            runs.map(|own| Row::of(own, results, &baseline, set, pair)).collect::<Vec<_>>()
+            runs.map(|own| {
+                let Job { run, backend, .. } = &own[0].job;
+                let name = if one_backend { run.clone() } else { format!("{run} on {backend}") };
+                Row { name, ..Row::of(own, results, &baseline, set, pair) }
+            })
+            .collect::<Vec<_>>()
         };
         let (mut pairs, mut sets) = (Vec::new(), Vec::new());
         for set in sorted.chunk_by(|a, b| a.job.set == b.job.set) {
@@ -112,6 +120,7 @@ impl Row {
         Self {
             set: set.map(str::to_owned),
             pair: pair.map(str::to_owned),
+            name: String::new(),
             run: job.run.clone(),
             backend: job.backend.clone(),
             scored: scored.len(),
@@ -124,11 +133,6 @@ impl Row {
             },
             score: sum,
         }
-    }
-
-    /// The run's name, with its backend.
-    pub fn name(&self) -> String {
-        format!("{} on {}", self.run, self.backend)
     }
 }
 
@@ -170,6 +174,7 @@ mod tests {
         let table = Table::of(&all.iter().collect::<Vec<_>>(), None);
         assert_eq!(table.baseline, "farneback:default");
         assert_eq!((table.pairs.len(), table.sets.len(), table.total.len()), (6, 4, 2));
+        assert_eq!(table.sets[1].name, "farneback-tv:fast");
         let aee = |row: &Row| row.score.class(Class::All).map(|tally| tally.error().aee_px);
         let [base, tv, base_b, tv_b] = &table.sets[..] else { unreachable!() };
         assert_eq!((aee(base), aee(tv), aee(base_b), aee(tv_b)), (Some(2.5), Some(0.5), Some(2.0), None));

@@ -31,7 +31,7 @@ pub(super) fn textured(frame: &Frame<'_>) -> Vec<bool> {
 }
 
 /// Gray levels, 0 to 255, with the weights of red, green and blue of ITU-R BT.601.
-pub(super) fn gray_levels(frame: &Frame<'_>) -> Vec<f32> {
+pub(crate) fn gray_levels(frame: &Frame<'_>) -> Vec<f32> {
     let format = frame.format();
     let gray = |pixel: &[u8]| match format {
         PixelFormat::Gray8 => f32::from(pixel[0]),

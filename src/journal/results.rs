@@ -172,7 +172,7 @@ impl<T: Entry> Results<T> {
     }
 
     /// All results, in no particular order.
-    pub(crate) fn all(&self) -> impl Iterator<Item = &T> {
+    pub fn all(&self) -> impl Iterator<Item = &T> {
         self.by_key.values()
     }
 

@@ -63,8 +63,23 @@ pub struct EvalCurves {
 pub struct EvalPair {
     /// The pair's name.
     pub name: String,
-    /// Images in PNG: a description of each for those who cannot see it, its caption, its size and its bytes.
-    pub images: Vec<(String, String, Size, Vec<u8>)>,
+    /// The images.
+    pub images: Vec<EvalImage>,
+}
+
+/// An image in a file's format.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EvalImage {
+    /// A description for those who cannot see it.
+    pub alt: String,
+    /// The caption.
+    pub caption: String,
+    /// Its size.
+    pub size: Size,
+    /// The format, such as `image/png`.
+    pub media_type: &'static str,
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
 }
 
 impl EvalPage {
@@ -86,6 +101,7 @@ impl EvalSet {
                  their true error.",
             );
             content += &format!("<div class=\"curves\">\n{}{}</div>\n", self.roc(), self.sparsification());
+            content += &self.legend();
         }
         if !self.pairs.is_empty() {
             content += &scale();
@@ -106,7 +122,7 @@ impl EvalSet {
         };
         let mut curves: Vec<Curve<'_>> = self.drawn().map(curve).collect();
         curves.retain(|curve| !curve.points.is_empty());
-        plot("alarms for bad pixels against false alarms", "", [0.0, 1.0], curves) + &self.legend()
+        plot("alarms for bad pixels against false alarms", "", [0.0, 1.0], curves)
     }
 
     fn sparsification(&self) -> String {
@@ -165,8 +181,8 @@ impl EvalTable {
 
 impl EvalPair {
     fn html(&self) -> String {
-        let image = |(alt, caption, size, png): &(String, String, Size, Vec<u8>)| {
-            figure(&data_uri("image/png", png), *size, alt, caption)
+        let image = |image: &EvalImage| {
+            figure(&data_uri(image.media_type, &image.bytes), image.size, &image.alt, &image.caption)
         };
         let images: String = self.images.iter().map(image).collect();
         format!("<h3>{}</h3>\n<div class=\"pictures\">\n{images}</div>\n", escape(&self.name))
@@ -212,7 +228,13 @@ mod tests {
             curves: vec![curves.clone(), EvalCurves { roc: Vec::new(), ..curves }],
             pairs: vec![EvalPair {
                 name: text("p<"),
-                images: vec![(text("alt \""), text("caption <"), Size::new(3, 2), vec![1, 2, 3])],
+                images: vec![EvalImage {
+                    alt: text("alt \""),
+                    caption: text("caption <"),
+                    size: Size::new(3, 2),
+                    media_type: "image/png",
+                    bytes: vec![1, 2, 3],
+                }],
             }],
         };
         let html = EvalPage { about: text("<on>"), sets: vec![set, EvalSet::default()] }.html();

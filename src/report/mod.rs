@@ -46,6 +46,6 @@ pub use divergence::{FULL_DIVERGENCE_HZ, diverging};
 pub use divergence_strip::divergence_strip;
 pub use error_map::{ERROR_COLOURS, error_map};
 #[cfg(feature = "io")]
-pub use eval::{EvalCurves, EvalPage, EvalPair, EvalSet, EvalTable};
+pub use eval::{EvalCurves, EvalImage, EvalPage, EvalPair, EvalSet, EvalTable};
 pub use overlay::Overlay;
 pub use thin::thinned;

@@ -76,13 +76,14 @@ impl Plot<'_> {
         svg + "</svg>\n"
     }
 
-    /// The title and the curves' names in one line.
+    /// The title and the names of those curves that have one, in one line.
     fn legend(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(", {}", self.unit) };
         let title = format!("{}{unit}", self.title);
         let mut svg = format!("<text class=\"title\" x=\"{LEFT}\" y=\"14\">{}</text>\n", escape(&title));
         let mut x = self.size[0] - RIGHT;
-        for curve in self.curves.iter().rev().filter(|_| self.curves.len() > 1) {
+        for curve in self.curves.iter().rev().filter(|curve| self.curves.len() > 1 && !curve.name.is_empty())
+        {
             // About the width of text of this size.
             x -= 6.2 * curve.name.chars().count() as f64;
             svg += &format!(

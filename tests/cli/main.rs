@@ -5,6 +5,7 @@ mod campaign;
 mod commands;
 mod demo;
 mod errors;
+mod eval;
 mod feed;
 mod fly;
 mod interrupted;

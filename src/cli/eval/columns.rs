@@ -100,7 +100,7 @@ macro_rules! classes {
 }
 
 /// The mean endpoint error of each class.
-pub(super) const CLASSES: [Column; 14] = classes! {
+pub(super) const CLASSES: [Column; 16] = classes! {
     Slow: "<10 px", "aee_slow_px";
     Medium: "10–40", "aee_medium_px";
     Fast: ">40", "aee_fast_px";
@@ -111,6 +111,8 @@ pub(super) const CLASSES: [Column; 14] = classes! {
     Textured: "textured", "aee_textured_px";
     Occluded: "occluded", "aee_occluded_px";
     Visible: "visible", "aee_visible_px";
+    Inside: "inside", "aee_inside_px";
+    Leaving: "leaving", "aee_leaving_px";
     DepthEdge: "depth edge", "aee_depth_edge_px";
     Thin: "thin", "aee_thin_px";
     Calm: "calm", "aee_calm_px";

@@ -1,4 +1,5 @@
-//! The images of the page: kept beside the results, or in memory.
+//! The images of the page: kept beside the results, or in memory. Error maps are PNG, as their colours are exact; what a pair
+//! shows is JPEG, which takes less.
 
 use std::collections::HashMap;
 use std::fs;
@@ -11,7 +12,7 @@ use crate::io::write_bytes;
 /// The folder of images beside the results.
 const FOLDER: &str = "maps";
 
-/// Images in PNG by name.
+/// Images by name.
 pub(super) enum Maps {
     /// Files in this folder.
     Folder(PathBuf),
@@ -27,6 +28,16 @@ pub(super) enum Shown<'a> {
     Truth,
     /// The error of a run.
     Error(&'a Job),
+}
+
+impl Shown<'_> {
+    /// The media type of the image.
+    pub(super) fn media_type(self) -> &'static str {
+        match self {
+            Self::FirstFrame | Self::Truth => "image/jpeg",
+            Self::Error(_) => "image/png",
+        }
+    }
 }
 
 impl Maps {
@@ -48,15 +59,15 @@ impl Maps {
         }
     }
 
-    pub(super) fn put(&mut self, set: &str, pair: &str, shown: Shown<'_>, png: Vec<u8>) -> Result<()> {
+    pub(super) fn put(&mut self, set: &str, pair: &str, shown: Shown<'_>, bytes: Vec<u8>) -> Result<()> {
         let name = name(set, pair, shown);
         match self {
             Self::Folder(folder) => {
                 fs::create_dir_all(&*folder).map_err(|source| Error::io(&*folder, source))?;
-                write_bytes(folder.join(name), &png)
+                write_bytes(folder.join(name), &bytes)
             }
             Self::Memory(images) => {
-                images.insert(name, png);
+                images.insert(name, bytes);
                 Ok(())
             }
             Self::Nowhere => Ok(()),
@@ -83,7 +94,7 @@ impl Maps {
         let wrong = |source| Error::io(&from, source);
         for entry in fs::read_dir(&from).map_err(wrong)? {
             let path = entry.map_err(wrong)?.path();
-            let is_image = path.extension().is_some_and(|extension| extension == "png");
+            let is_image = path.extension().is_some_and(|extension| extension == "png" || extension == "jpg");
             if let Some(name) = path.file_name().filter(|_| is_image) {
                 let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
                 write_bytes(folder.join(name), &bytes)?;
@@ -109,7 +120,7 @@ fn name(set: &str, pair: &str, shown: Shown<'_>) -> String {
             _ => name += &format!("%{:x}", u32::from(character)),
         }
     }
-    name + ".png"
+    name + if shown.media_type() == "image/png" { ".png" } else { ".jpg" }
 }
 
 #[cfg(test)]
@@ -120,6 +131,6 @@ mod tests {
     fn names_are_plain_and_differ() {
         let job = Job { set: "a".into(), pair: "b/c".into(), run: "x:y:p=0.5".into(), backend: "cpu".into() };
         assert_eq!(name("a", "b/c", Shown::Error(&job)), "a~b~c~x+y+p=0.5@cpu.png");
-        assert_eq!(name("a b", "é~", Shown::Truth), "a%20b~%e9%7e~truth.png");
+        assert_eq!(name("a b", "é~", Shown::Truth), "a%20b~%e9%7e~truth.jpg");
     }
 }

@@ -26,7 +26,7 @@ pub(super) struct Merge {
     /// Folder to write into, created if missing. Results already there are replaced
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
-    /// Run to which the others are compared [default: the first one]
+    /// Run to which the others are compared [default: that of the first row]
     #[arg(long, value_name = "RUN")]
     baseline: Option<RunSpec>,
     /// Print the tables as JSON

@@ -10,6 +10,7 @@ mod page;
 mod select;
 mod sets;
 mod single;
+mod sink;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -112,7 +113,7 @@ struct DataArgs {
         requires = "data"
     )]
     run: Vec<RunSpec>,
-    /// Run to which the others are compared [default: the first one]
+    /// Run to which the others are compared [default: that of the first row]
     #[arg(long, value_name = "RUN")]
     baseline: Option<RunSpec>,
     /// Timed repetitions of each pair, after one that is not timed; 0 times nothing

@@ -7,7 +7,7 @@ use super::maps::{Maps, Shown};
 use crate::error::Result;
 use crate::eval::{Bad, PairResult, Row, STEPS, Table};
 use crate::io::picture;
-use crate::report::{EvalCurves, EvalPage, EvalPair, EvalSet, EvalTable};
+use crate::report::{EvalCurves, EvalImage, EvalPage, EvalPair, EvalSet, EvalTable};
 use crate::text::counted;
 
 /// The page.
@@ -70,7 +70,7 @@ fn grid(about: &str, columns: &[Column], rows: &[&Row]) -> Option<EvalTable> {
             Best::Largest => values.max_by(f64::total_cmp),
             Best::Neither => None,
         }
-        .filter(|_| rows.len() > 1)
+        .filter(|best| rows.iter().any(|row| (column.value)(row).is_some_and(|value| value != *best)))
     };
     let bests: Vec<Option<f64>> = columns.iter().map(best).collect();
     let cells = |row: &&Row| {
@@ -78,7 +78,7 @@ fn grid(about: &str, columns: &[Column], rows: &[&Row]) -> Option<EvalTable> {
             let is_best = best.is_some() && (column.value)(row) == *best;
             (cell(row, column), is_best)
         });
-        std::iter::once((row.name(), false)).chain(figures).collect()
+        std::iter::once((row.name.clone(), false)).chain(figures).collect()
     };
     let heads = std::iter::once("run").chain(columns.iter().map(|column| column.head));
     (!columns.is_empty()).then(|| EvalTable {
@@ -94,7 +94,7 @@ fn curves(row: &Row) -> Option<EvalCurves> {
         (1..).zip(values).map(|(step, px): (usize, _)| [step as f64 / STEPS as f64, *px]).collect::<Vec<_>>()
     };
     Some(EvalCurves {
-        run: row.name(),
+        run: row.name.clone(),
         roc: score.roc(Bad::Everywhere).map(|roc| roc.points().to_vec()).unwrap_or_default(),
         best_px: steps(score.sparsification().best_px()),
         oracle_px: steps(score.sparsification().oracle_px()),
@@ -110,7 +110,7 @@ fn images(table: &Table, results: &[&PairResult], maps: &Maps) -> Result<Option<
         (
             Shown::Truth,
             "The true flow as colours".to_owned(),
-            "true flow; its largest displacement in full colour".to_owned(),
+            "true flow; its largest displacement in full colour, black unknown".to_owned(),
         ),
     ];
     for result in results {
@@ -121,14 +121,14 @@ fn images(table: &Table, results: &[&PairResult], maps: &Maps) -> Result<Option<
         };
         let row = table.pairs.iter().find(is_its).filter(|row| row.scored > 0);
         let Some(row) = row else { continue };
-        let caption = format!("{}: {} px, {}°", row.name(), cell(row, &ERRORS[0]), cell(row, &ERRORS[2]));
-        shown.push((Shown::Error(&result.job), format!("Error map of {}", row.name()), caption));
+        let caption = format!("{}: {} px, {}°", row.name, cell(row, &ERRORS[0]), cell(row, &ERRORS[2]));
+        shown.push((Shown::Error(&result.job), format!("Error map of {}", row.name), caption));
     }
     let mut images = Vec::new();
     for (what, alt, caption) in shown {
-        if let Some(png) = maps.get(set, pair, what) {
-            let size = picture::decode(Path::new("map"), &png)?.size;
-            images.push((alt, caption, size, png));
+        if let Some(bytes) = maps.get(set, pair, what) {
+            let size = picture::decode(Path::new("map"), &bytes)?.size;
+            images.push(EvalImage { alt, caption, size, media_type: what.media_type(), bytes });
         }
     }
     Ok((images.len() > 2).then(|| EvalPair { name: pair.clone(), images }))

@@ -46,7 +46,7 @@ fn grid(corner: &str, columns: &[Column], rows: &[&Row]) -> String {
     let mut lines = vec![heads.map(str::to_owned).collect::<Vec<_>>()];
     for row in rows {
         let cells = columns.iter().map(|column| cell(row, column));
-        lines.push(std::iter::once(row.name()).chain(cells).collect());
+        lines.push(std::iter::once(row.name.clone()).chain(cells).collect());
     }
     print::table(&lines)
 }
@@ -60,15 +60,15 @@ fn by_pair(rows: &[&Row]) -> String {
     }
     let mut runs: Vec<String> = Vec::new();
     for row in rows {
-        if !runs.contains(&row.name()) {
-            runs.push(row.name());
+        if !runs.contains(&row.name) {
+            runs.push(row.name.clone());
         }
     }
     let mut lines =
         vec![std::iter::once("AEE px / AAE °").chain(names.iter().copied()).map(str::to_owned).collect()];
     for run in runs {
         let figures = |pair: &&str| {
-            let row = rows.iter().find(|row| row.pair.as_deref() == Some(pair) && row.name() == run);
+            let row = rows.iter().find(|row| row.pair.as_deref() == Some(pair) && row.name == run);
             row.map_or_else(String::new, |row| {
                 format!("{} / {}", cell(row, &ERRORS[0]), cell(row, &ERRORS[2]))
             })
