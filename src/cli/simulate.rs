@@ -28,7 +28,7 @@ const LARGE: f64 = 1e9;
 /// The flight is steered by true depth, so an aircraft could fly it. Beside frames/ the folder holds times.csv,
 /// camera.yaml (OpenCV's), gyro.csv and gyro_true.csv (body axes: forward, right, down), poses.csv, and a README.md
 /// that documents each file, its units and frames, and how it was made. Ground truth, one file per frame: flow/
-/// (.flo, pixels to the next frame, unknown where that does not show the point), depth/ (.npy, metres along the ray),
+/// (.flo, pixels to the next frame, unknown where the point is hidden there), depth/ (.npy, metres along the ray),
 /// nearness/ (1/m), divergence/ and spherical/ (of the flow on the view sphere, 1/s and rad/s), grid/ (distances by
 /// azimuth and elevation, see --grid).
 ///
@@ -43,6 +43,7 @@ Examples:
   viewsphere simulate --world wall --truth grid --grid 64x16 -o set/
   viewsphere simulate --world corridor --seconds 3 --truth divergence,nearness --pictures -o set/
   viewsphere flow 'set/frames/%06d.png' -o estimate/ && viewsphere eval --truth set/flow/000010.flo estimate/000010.flo
+  viewsphere eval --data set/ --run farneback,farneback-tv:fine
   viewsphere run 'set/frames/%06d.png' --camera set/camera.yaml --times set/times.csv \\
     --gyro set/gyro.csv --camera-from-gyro frd --heading turning")]
 pub(super) struct Simulate {

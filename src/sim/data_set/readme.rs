@@ -50,8 +50,8 @@ pub(super) fn write(
     for truth in &config.truths {
         text += &match truth {
             Truth::Flow => "| flow/NNNNNN.flo | pixels from this frame to the next one, x to the right and y down, of each \
-                            pixel's centre; over 1e9 where the next frame does not show it, or the lens shows nothing; the \
-                            last frame has none |\n"
+                            pixel's centre; it may lead out of the frame; over 1e9 where the point is hidden there, or the \
+                            lens shows nothing; the last frame has none |\n"
                 .to_owned(),
             Truth::Depth => "| depth/NNNNNN.npy | metres along the ray of each pixel's centre, float32, height × width; \
                              infinite for the sky, NaN where the lens shows nothing |\n"
@@ -94,10 +94,11 @@ pub(super) fn write(
              ## Use\n\n\
              \x20   viewsphere flow 'frames/%06d.png' -o estimate/\n\
              \x20   viewsphere eval --truth flow/000000.flo estimate/000000.flo\n\
+             \x20   viewsphere eval --data . --run farneback,farneback-tv:fine\n\
              \x20   viewsphere run 'frames/%06d.png' --camera camera.yaml --times times.csv --gyro gyro.csv \
              --camera-from-gyro frd --heading turning\n\n\
-             The sky has a true flow but no texture, and counts in `eval` unless `--mask` excludes it: the pixels whose depth \
-             is infinite.\n";
+             The sky has a true flow but no texture. `eval --data` tells it apart by its infinite depth; in `eval --truth` it \
+             counts unless `--mask` excludes it.\n";
     write_bytes(folder.path("README.md"), text.as_bytes())
 }
 
