@@ -156,6 +156,29 @@ fn every_kind_of_set_is_read() {
 }
 
 #[test]
+fn the_literatures_errors_stand_beside_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = Scene::new(SIZE).unwrap();
+    for number in [8, 9, 10] {
+        write_frame(&at.join(format!("set/yos{number:02}.png")), &scene.frame(number));
+    }
+    flo::write(at.join("set/flow09.flo"), &scene.flow(9)).unwrap();
+    let table = ["--data", "set", "--table", "yosemite"];
+    let ended = well(eval(at, &[&table[..], &["--run", "farneback-tv:fast"]].concat()));
+    let rows = |needle: &str| ended.stdout.lines().filter(|line| line.contains(needle)).count();
+    assert_eq!([rows("(quoted)"), rows("farneback-tv:fast")], [7, 2], "{}", ended.stdout);
+    // Every preset of every algorithm, unless some are named.
+    let all = well(eval(at, &[&table[..], &["--algorithm", "farneback"]].concat())).stdout;
+    for preset in ["fast", "default", "accurate", "increment", "affine"] {
+        assert!(all.contains(&format!("farneback:{preset}")), "{preset}: {all}");
+    }
+    middlebury(&at.join("mb"));
+    let ended = eval(at, &["--data", "mb", "--table", "yosemite"]);
+    assert!(ended.code == Some(2) && ended.stderr.contains("yosemite"), "{}", ended.stderr);
+}
+
+#[test]
 fn results_are_resumed_and_shards_merged() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

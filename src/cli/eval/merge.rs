@@ -54,6 +54,7 @@ impl Merge {
         merged.write(output)?;
         let json = self.json.then_some(Path::new(super::STDOUT));
         let baseline = self.baseline.as_ref().map(RunSpec::label);
-        Output { folder: Some(&self.output), json, csv: None, html: None, baseline }.finish(&merged, &maps)
+        Output { folder: Some(&self.output), json, csv: None, html: None, baseline, table: None }
+            .finish(&merged, &maps)
     }
 }

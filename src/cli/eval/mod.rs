@@ -3,6 +3,7 @@
 mod backends;
 mod columns;
 mod json;
+mod literature;
 mod maps;
 mod merge;
 mod output;
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use self::backends::BackendList;
+use self::literature::NamedTable;
 use self::merge::Merge;
 use self::output::Output;
 use self::select::Choice;
@@ -62,6 +64,7 @@ Examples:
   viewsphere eval --data data/ --algorithm farneback,farneback-tv --preset accurate,fine --html report.html
   viewsphere eval --data sintel/ --run farneback-tv:best,farneback --baseline farneback:default -o results/
   viewsphere eval --data set/ --pairs 3..52:8 --run farneback-tv:fine:alpha=1.5,farneback-tv:fine --repeats 0
+  viewsphere eval --data yosemite/ --table yosemite
   viewsphere eval --data kitti/ --shard $SLURM_ARRAY_TASK_ID/10 -o part_$SLURM_ARRAY_TASK_ID
   viewsphere eval merge part_* -o results/
 
@@ -113,6 +116,9 @@ struct DataArgs {
         requires = "data"
     )]
     run: Vec<RunSpec>,
+    /// Print this table, of all presets unless some are named
+    #[arg(long, value_name = "NAME", requires = "data", conflicts_with = "kind")]
+    table: Option<NamedTable>,
     /// Run to which the others are compared [default: that of the first row]
     #[arg(long, value_name = "RUN")]
     baseline: Option<RunSpec>,
@@ -171,13 +177,14 @@ impl Eval {
     }
 
     fn output(&self) -> Output<'_> {
-        let DataArgs { output, csv, html, baseline, .. } = &self.data;
+        let DataArgs { output, csv, html, baseline, table, .. } = &self.data;
         Output {
             folder: output.as_deref(),
             json: self.json.as_deref(),
             csv: csv.as_deref(),
             html: html.as_deref(),
             baseline: baseline.as_ref().map(RunSpec::label),
+            table: *table,
         }
     }
 }

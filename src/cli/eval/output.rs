@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::json::TableFigures;
+use super::literature::NamedTable;
 use super::maps::Maps;
 use super::{page, text};
 use crate::cli::{Outcome, input, print};
@@ -22,6 +23,8 @@ pub(super) struct Output<'a> {
     pub(super) csv: Option<&'a Path>,
     pub(super) html: Option<&'a Path>,
     pub(super) baseline: Option<&'a str>,
+    /// What to print in place of the general tables.
+    pub(super) table: Option<NamedTable>,
 }
 
 /// What all results of a journal have in common.
@@ -78,7 +81,7 @@ impl Output<'_> {
         if self.prints_json() {
             print::json(&TableFigures::of(&table))?;
         } else {
-            print::text(&text::text(&table))?;
+            print::text(&self.table.map_or_else(|| text::text(&table), |named| named.text(&table)))?;
         }
         let mut failed = sorted.into_iter().filter_map(|result| match &result.ended {
             Ended::Failed(reason) => Some((result.job.key(), reason)),

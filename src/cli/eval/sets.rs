@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::DataArgs;
 use super::backends::Opened as OpenedBackend;
+use super::literature::NamedTable;
 use super::output::{Output, RESULTS};
 use super::select::select;
 use super::sink::Sink;
@@ -55,7 +56,7 @@ fn runs(args: &DataArgs) -> Result<Vec<RunSpec>> {
         let all: Vec<String> =
             RunSpec::defaults().iter().map(|run| run.algorithm().name().to_owned()).collect();
         let algorithms = if args.algorithm.is_empty() { &all } else { &args.algorithm };
-        let default = ["default".to_owned()];
+        let default = [if args.table.is_some() { "all" } else { "default" }.to_owned()];
         let presets = if args.preset.is_empty() { &default[..] } else { &args.preset };
         runs.extend(RunSpec::combinations(algorithms, presets)?);
     }
@@ -75,8 +76,9 @@ fn runs(args: &DataArgs) -> Result<Vec<RunSpec>> {
 /// The pairs of all data sets.
 fn tasks(args: &DataArgs) -> Result<Vec<Task>> {
     let mut sets: Vec<DataSet> = Vec::new();
+    let kind = args.table.map(NamedTable::kind).or(args.kind);
     for folder in &args.data {
-        sets.extend(data_set::find(folder, args.kind)?);
+        sets.extend(data_set::find(folder, kind)?);
     }
     select(&mut sets, &args.pairs)?;
     let mut names = BTreeSet::new();
