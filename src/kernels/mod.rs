@@ -15,6 +15,9 @@ mod surface_inputs;
 pub mod surface_layout;
 pub mod tables;
 pub mod test_inputs;
+mod track_points_bound;
+mod track_points_cases;
+mod window_samples;
 
 macro_rules! registry {
     (($d:tt) $($kernel:ident),* $(,)?) => {
@@ -66,6 +69,14 @@ registry!(
     warp,
     gradient_equations,
     unweight,
+    structure_tensor,
+    block_sum,
+    corner_response,
+    local_maxima,
+    row_maximum,
+    pyr_down,
+    patches,
+    track_points,
     undistort_map,
     remap,
     rotational_flow,

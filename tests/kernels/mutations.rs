@@ -6,12 +6,14 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, affine_columns, binomial, cast, cell_confidence, cell_mean, cells, compare, confidence,
-    downsample_flow, expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations, links,
-    looming, luma, misfit, nonlocal, normal_equations, normalized_expansion_x, normalized_expansion_y,
-    premultiply, remap, resample_x, resample_y, residual, robust_equations, rotational_flow, sectors, sensor,
-    shade, slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, sweep,
-    undistort_map, unweight, upsample, warp, weighted_normal_equations, weighted_robust_equations, window_y,
+    ALL, affine_columns, binomial, block_sum, cast, cell_confidence, cell_mean, cells, compare, confidence,
+    corner_response, downsample_flow, expansion_x, expansion_y, expected_slope, fit_weight,
+    gradient_equations, links, local_maxima, looming, luma, misfit, nonlocal, normal_equations,
+    normalized_expansion_x, normalized_expansion_y, patches, premultiply, pyr_down, remap, resample_x,
+    resample_y, residual, robust_equations, rotational_flow, row_maximum, sectors, sensor, shade,
+    slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, structure_tensor, sweep,
+    track_points, undistort_map, unweight, upsample, warp, weighted_normal_equations,
+    weighted_robust_equations, window_y,
 };
 
 use crate::need;
@@ -190,6 +192,37 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&sensor::KERNEL, "seed[1] ^ ", ""),
     (&sensor::KERNEL, "0.0, 255.0", "0.0, 256.0"),
     (&confidence::KERNEL, "clamp(coverage, vec4f(), vec4f(1.0)) * ", ""),
+    (&structure_tensor::KERNEL, "2.0 * (here.z - here.x)", "1.0 * (here.z - here.x)"),
+    (&structure_tensor::KERNEL, "reflect_101(x - 1, n)", "u32(max(x - 1, 0))"),
+    (&block_sum::KERNEL, "params.block / 2u", "(params.block - 1u) / 2u"),
+    (&block_sum::KERNEL, "reflect_101(first + i32(k), i32(params.height))", "clamp_index(first + i32(k), params.height)"),
+    (&corner_response::KERNEL, "params.block / 2u", "(params.block - 1u) / 2u"),
+    (&corner_response::KERNEL, "params.k * trace", "trace"),
+    (&corner_response::KERNEL, " + sum.y * sum.y", ""),
+    (&local_maxima::KERNEL, "max(max(above, below), here)", "max(above, here)"),
+    (&local_maxima::KERNEL, " && mask[y * stride + x] > 0.0", " && mask[y * stride + x] >= 0.0"),
+    (&local_maxima::KERNEL, "x > 0u && ", ""),
+    (&row_maximum::KERNEL, "x < min(params.width, MAX_SIDE)", "x < min(params.width - 1u, MAX_SIDE)"),
+    (&row_maximum::KERNEL, "mask[start + x] > 0.0", "mask[start + x] >= 0.0"),
+    (&row_maximum::KERNEL, "other < (64u >> k)", "other < (32u >> k)"),
+    (&pyr_down::KERNEL, "+ 4.0 * d", "+ 4.001 * d"),
+    (&pyr_down::KERNEL, "reflect_101(x + 2, n)", "reflect_101(x + 1, n)"),
+    (&pyr_down::KERNEL, "first - 2", "first - 1"),
+    (&patches::KERNEL, "(ys >= vec2i())", "(ys >= vec2i(-1))"),
+    (&patches::KERNEL, "0.5 * (window - 1.0)", "0.5 * window"),
+    (&patches::KERNEL, "whole >= -window", "whole > -window"),
+    (&patches::KERNEL, "10.0 * upper.yz", "10.01 * upper.yz"),
+    (&patches::KERNEL, "k < area);", "k <= area);"),
+    (&patches::KERNEL, "i < 8u; i++) {\n            sum += eighths", "i < 7u; i++) {\n            sum += eighths"),
+    (&track_points::KERNEL, "tensor.y * b.x - tensor.x * b.y", "tensor.y * b.x - 1.001 * tensor.x * b.y"),
+    (&track_points::KERNEL, "found -= 0.5 * shift", "found -= 0.51 * shift"),
+    (&track_points::KERNEL, "<= params.epsilon", "< 0.0"),
+    (&track_points::KERNEL, "&& smaller >= params.min_eigenvalue", ""),
+    (&track_points::KERNEL, "clear && meets(end)", "clear"),
+    (&track_points::KERNEL, "if !meets(place)", "if false"),
+    (&track_points::KERNEL, "before = shift", "before = -shift"),
+    (&track_points::KERNEL, "abs(d), 0.0", "d, 0.0"),
+    (&track_points::KERNEL, "found / params.scale", "found"),
 ];
 
 #[test]
