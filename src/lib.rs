@@ -151,6 +151,7 @@
 //! | steering | [`steer`] | from sectors to bank and climb |
 //! | cues | [`pipeline`] | from frames and a gyro to cues |
 //! | flow of streams | [`engine`], [`eval`] | flow of a stream of frames; errors of a flow field against the truth |
+//! | points of streams | [`features`], [`tracking`] | corners; points and tracks from frame to frame (sparse Lucas–Kanade) |
 //! | execution | [`stream`], [`runner`] | a plan on a stream of frames in real time; on single images or pairs |
 //! | methods | [`flow`], [`sphere`] | flow estimators and the view sphere, which build plans |
 //! | plans | [`plan`] | a frame's computation as data: buffers, steps and ports |
@@ -218,6 +219,7 @@ pub mod crosscheck;
 pub mod engine;
 pub mod error;
 pub mod eval;
+pub mod features;
 pub mod flow;
 #[cfg(feature = "io")]
 mod fnv;
@@ -247,6 +249,7 @@ pub mod steer;
 pub mod stream;
 #[cfg(any(feature = "report", all(feature = "sim", feature = "io")))]
 mod text;
+pub mod tracking;
 #[cfg(feature = "serde")]
 pub mod wire;
 

@@ -21,6 +21,7 @@ mod input;
 mod print;
 mod run;
 mod simulate;
+mod track;
 mod undistort;
 
 use std::process::ExitCode;
@@ -46,6 +47,7 @@ Examples:
   viewsphere flow a.png b.png -o flow.flo            the flow between two images
   ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere flow - -o flows/
   viewsphere run flight.y4m --camera cam.yaml --gyro gyro.csv    what will be hit, where and when
+  viewsphere track 'frames/%04d.png' -o tracks.csv    corners and their tracks over a sequence
   viewsphere simulate --world city --seed 3 -o set/    a simulated flight with exact ground truth
   viewsphere undistort --camera cam.yaml in.jpg -o out.png
   viewsphere fly --world forest --seed 7             through a simulated world, steered by what the view says
@@ -62,6 +64,7 @@ struct Cli {
 enum Command {
     Flow(Box<flow::Flow>),
     Run(Box<run::Run>),
+    Track(Box<track::TrackCommand>),
     Fly(Box<fly::Fly>),
     Campaign(Box<campaign::Campaign>),
     Simulate(Box<simulate::Simulate>),
@@ -106,6 +109,7 @@ impl Command {
         match self {
             Self::Flow(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Track(command) => command.run(),
             Self::Fly(command) => command.run(),
             Self::Campaign(command) => command.run(),
             Self::Simulate(command) => command.run(),

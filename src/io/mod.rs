@@ -15,6 +15,7 @@ pub mod npy;
 mod npy_header;
 mod pattern;
 pub mod picture;
+pub mod points;
 mod raw;
 mod read;
 pub mod sequence;

@@ -119,7 +119,7 @@ pub(super) fn points(size: Size, count: usize) -> Vec<f32> {
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let window = [[21, 21], [7, 5], [2, 10]];
+    let window = [[7, 5], [21, 21], [2, 10]];
     let all = Fill::NUMBERS.iter().zip(window).zip([1.0, 0.5, 0.25]);
     all.map(|((&fill, [window_width, window_height]), scale)| {
         let params = Params { width: size.width, height: size.height, window_width, window_height, scale };

@@ -33,6 +33,7 @@ mod overlay;
 mod plot;
 mod rectified;
 mod thin;
+mod tracks;
 
 pub use arrows::arrows;
 pub use campaign::{CampaignRow, campaign_page};
@@ -49,3 +50,4 @@ pub use error_map::{ERROR_COLOURS, error_map};
 pub use eval::{EvalCurves, EvalImage, EvalPage, EvalPair, EvalSet, EvalTable};
 pub use overlay::Overlay;
 pub use thin::thinned;
+pub use tracks::TrackOverlay;

@@ -373,7 +373,7 @@ fn has_adapter_without_vulkan(folder: &Path, without: Without) -> bool {
 #[test]
 fn every_help_has_examples() {
     let folder = tempfile::tempdir().unwrap();
-    for command in ["run", "flow", "undistort", "crosscheck", "eval", "bench", "devices", "demo"] {
+    for command in ["run", "flow", "track", "undistort", "crosscheck", "eval", "bench", "devices", "demo"] {
         let text = run(&folder, &[command, "--help"]).well().text();
         assert!(text.contains(&format!("Examples:\n  viewsphere {command}")), "{text}");
     }

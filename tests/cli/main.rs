@@ -15,4 +15,5 @@ mod program;
 mod report;
 mod run;
 mod simulate;
+mod track;
 mod undistort;

@@ -17,6 +17,7 @@ mod increments;
 #[path = "../common/need.rs"]
 mod need;
 mod opencv_fields;
+mod opencv_points;
 mod pair;
 mod public_pairs;
 #[path = "../common/quantile.rs"]
@@ -24,3 +25,4 @@ mod quantile;
 mod readers;
 mod robot;
 mod steer;
+mod tracker;

@@ -6,5 +6,6 @@ mod gpu;
 mod mutations;
 #[path = "../common/need.rs"]
 mod need;
+mod points;
 mod sides;
 mod sphere;

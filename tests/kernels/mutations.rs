@@ -219,7 +219,7 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&track_points::KERNEL, "<= params.epsilon", "< 0.0"),
     (&track_points::KERNEL, "&& smaller >= params.min_eigenvalue", ""),
     (&track_points::KERNEL, "clear && meets(end)", "clear"),
-    (&track_points::KERNEL, "if !meets(place)", "if false"),
+    (&track_points::KERNEL, "reflect_101(pixel.x + 1, n.x)", "reflect_101(pixel.x, n.x)"),
     (&track_points::KERNEL, "before = shift", "before = -shift"),
     (&track_points::KERNEL, "abs(d), 0.0", "d, 0.0"),
     (&track_points::KERNEL, "found / params.scale", "found"),
