@@ -65,6 +65,7 @@ def corners(options, first, second, quality, distance, block, k):
 def tracks(options, first, second, window, levels, iterations, epsilon):
     images = [cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) for path in (first, second)]
     points = cv2.goodFeaturesToTrack(images[0], 1000, 0.001, 5).reshape(-1, 2)
+    corners = len(points)
     # Places between pixels, and on no corner.
     height, width = images[0].shape
     grid = np.float32([(x + 0.3, y + 0.6) for y in range(4, height - 4, 12) for x in range(4, width - 4, 12)])
@@ -85,7 +86,8 @@ def tracks(options, first, second, window, levels, iterations, epsilon):
     both = found & status
     apart = np.linalg.norm(places - there.reshape(-1, 2), axis=1)[both]
     errors = np.abs(np.float32([row["error"] for row in rows]) - error.ravel())[both]
-    return len(points), both.mean(), (found == status).mean(), *np.quantile(apart, [0.5, 0.9, 0.99]), np.median(errors)
+    same = found == status
+    return len(points), both.mean(), same.mean(), same[:corners].mean(), *np.quantile(apart, [0.5, 0.9, 0.99]), np.median(errors)
 
 
 def main():
@@ -99,13 +101,13 @@ def main():
 
 
 def compare(options, pairs):
-    print("| pair | window, levels | points | found by both | same status | difference: median | 90 % | 99 % | of the error |")
-    print("|---" * 9 + "|")
+    print("| pair | window, levels | points | found by both | status | of corners | median | 90 % | 99 % | of the error |")
+    print("|---" * 10 + "|")
     for name, first, second in pairs:
         for settings in SETTINGS:
-            count, both, same, median, most, almost, error = tracks(options, first, second, *settings)
-            print(f"| {name} | {settings[0]}, {settings[1]} | {count} | {both:.1%} | {same:.2%} | {median:.5f} px | {most:.4f} px "
-                  f"| {almost:.3f} px | {error:.3f} |", flush=True)
+            count, both, same, of_corners, median, most, almost, error = tracks(options, first, second, *settings)
+            print(f"| {name} | {settings[0]}, {settings[1]} | {count} | {both:.1%} | {same:.2%} | {of_corners:.2%} | {median:.5f} | {most:.4f} "
+                  f"| {almost:.3f} | {error:.4f} |", flush=True)
     print("\n| pair | quality, distance, block, k | OpenCV | ours | the same |\n" + "|---" * 5 + "|")
     for name, first, second in pairs:
         for settings in CORNERS:

@@ -5,6 +5,7 @@ struct Params {
     height: u32,
     in_width: u32,
     in_height: u32,
+    whole: u32, // 1 to round to whole gray levels
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -35,7 +36,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
         let d = row(columns, 2 * i32(y) + 1);
         let e = row(columns, 2 * i32(y) + 2);
-        half[y * stride + id.x] = (a + 4.0 * b + 6.0 * c + 4.0 * d + e) * 0.00390625;
+        let value = (a + 4.0 * b + 6.0 * c + 4.0 * d + e) * 0.00390625;
+        half[y * stride + id.x] = select(value, floor(value + 0.5), params.whole == 1u);
         a = c;
         b = d;
         c = e;

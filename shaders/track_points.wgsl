@@ -93,24 +93,33 @@ fn misfit(lane: u32, point: u32, place: vec2f) -> vec4f {
     let whole = floor(place);
     let corner = vec2i(select(vec2f(), whole, inside));
     let part = place - whole;
+    let end = corner + vec2i(vec2u(params.window_width, params.window_height));
+    // Most windows lie inside, where nothing is mirrored.
+    let interior = all(corner >= vec2i()) && all(end < vec2i(vec2u(params.width, params.height)));
     var sum = vec4f();
     if inside {
         for (var k = lane; k < min(area, MAX_SAMPLES); k += LANES) {
             let at = 3u * point * stride + k;
-            let d = sampled(corner + offset(k), part) - patches[at];
+            let d = sampled(corner + offset(k), part, interior) - patches[at];
             sum += vec4f(patches[at + stride] * d, patches[at + 2u * stride] * d, abs(d), 0.0);
         }
     }
     return lane_sum(lane, sum) / f32(area);
 }
 
-fn sampled(pixel: vec2i, part: vec2f) -> f32 {
+fn sampled(pixel: vec2i, part: vec2f, interior: bool) -> f32 {
     let stride = (params.width + 3u) / 4u * 4u;
     let n = vec2i(i32(params.width), i32(params.height));
-    let left = reflect_101(pixel.x, n.x);
-    let right = reflect_101(pixel.x + 1, n.x);
-    let above = stride * reflect_101(pixel.y, n.y);
-    let below = stride * reflect_101(pixel.y + 1, n.y);
+    var left = u32(pixel.x);
+    var right = left + 1u;
+    var above = stride * u32(pixel.y);
+    var below = above + stride;
+    if !interior {
+        left = reflect_101(pixel.x, n.x);
+        right = reflect_101(pixel.x + 1, n.x);
+        above = stride * reflect_101(pixel.y, n.y);
+        below = stride * reflect_101(pixel.y + 1, n.y);
+    }
     let across = vec2f(1.0 - part.x, part.x);
     return (1.0 - part.y) * dot(across, vec2f(image[above + left], image[above + right]))
         + part.y * dot(across, vec2f(image[below + left], image[below + right]));

@@ -61,17 +61,19 @@ fn reference(p: &Params, image: &[f32], points: &[f32], patches: &mut [f32], ten
             let side = window.pixels(image, [width, height, stride], 1, scratch);
             let (gray, rest) = patch.split_at_mut(padded);
             let (i_x, i_y) = rest.split_at_mut(padded);
-            for k in 0..area {
-                let (row, column) = (k / window.columns, k % window.columns);
-                let rows: [&[f32]; 4] = std::array::from_fn(|j| &scratch[(row + j) * side + column..][..4]);
-                let pixel = [window.corner[0] + column as isize, window.corner[1] + row as isize];
-                [gray[k], i_x[k], i_y[k]] = sampled(rows, window.part, pixel, [width, height]);
+            for row in 0..window.rows {
+                for column in 0..window.columns {
+                    let k = row * window.columns + column;
+                    let rows: [&[f32]; 4] = std::array::from_fn(|j| &scratch[(row + j) * side + column..][..4]);
+                    let pixel = [window.corner[0] + column as isize, window.corner[1] + row as isize];
+                    [gray[k], i_x[k], i_y[k]] = sampled(rows, window.part, pixel, [width, height]);
+                }
             }
             for channel in [&mut *gray, &mut *i_x, &mut *i_y] {
                 let last = channel[area - 1];
                 channel[area..].fill(last);
             }
-            let sums = lane_sums(area, |k| [i_x[k] * i_x[k], i_x[k] * i_y[k], i_y[k] * i_y[k]]);
+            let sums = lane_sums([&i_x[..area], &i_y[..area]], #[inline(always)] |[i_x, i_y]| [i_x * i_x, i_x * i_y, i_y * i_y]);
             tensor[..3].copy_from_slice(&sums.map(|sum| sum / area as f32));
             tensor[3] = 1.0;
         }

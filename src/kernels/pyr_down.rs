@@ -1,6 +1,6 @@
 //! Halves an image: smooths it by [1 4 6 4 1]/16 in both directions, mirrored at the border, and keeps every other
 //! pixel. Burt and Adelson, The Laplacian pyramid as a compact image code, IEEE Transactions on Communications 1983;
-//! OpenCV's `pyrDown`, whose 8-bit results are rounded to whole gray levels where these keep their fractions.
+//! OpenCV's `pyrDown`, which rounds levels of 8-bit images to whole gray levels.
 
 use super::parallel_rows::{Split, bands, dimensions, reflect_101, repeat_last};
 use super::test_inputs::{Fill, gray_cases};
@@ -18,6 +18,8 @@ params! {
         in_width: u32,
         /// Rows of the image.
         in_height: u32,
+        /// 1 to round to whole gray levels.
+        whole: u32,
     }
 }
 
@@ -28,15 +30,16 @@ kernel!(
     tolerance: Tolerance {
         absolute: 0.0,
         relative: 8.0 * f32::EPSILON, of_largest: 0.0,
-        reason: "sums of 25 positive products in two steps, fused or not; whole numbers below 2¹⁶ are exact",
+        reason: "sums of 25 positive products in two steps, fused or not; of whole numbers below 2¹⁶ they are exact, and so \
+                 is what is rounded",
     },
 );
 
 impl Params {
     /// The parameters for an image of this size.
-    pub fn new(size: Size) -> Self {
+    pub fn new(size: Size, whole: bool) -> Self {
         let Size { width, height } = halved(size);
-        Self { width, height, in_width: size.width, in_height: size.height }
+        Self { width, height, in_width: size.width, in_height: size.height, whole: u32::from(whole) }
     }
 }
 
@@ -62,7 +65,8 @@ fn reference(p: &Params, image: &[f32], half: &mut [f32]) {
             for (x, out) in out[..width].iter_mut().enumerate() {
                 let column = |k: usize| band.scratch[reflect_101((2 * x + k) as isize - 2, in_width)];
                 let sum = (0..5).fold(0.0, |sum, k| sum + WEIGHTS[k] * column(k));
-                *out = sum * (1.0 / 256.0);
+                let value = sum * (1.0 / 256.0);
+                *out = if p.whole == 1 { (value + 0.5).floor() } else { value };
             }
             repeat_last(out, width);
         }
@@ -71,5 +75,16 @@ fn reference(p: &Params, image: &[f32], half: &mut [f32]) {
 
 fn cases(size: Size) -> Vec<Case> {
     let half = halved(size);
-    gray_cases(size, Fill::ALL, bytemuck::bytes_of(&Params::new(size)), &[], &[half.stride()], half)
+    let params = Params::new(size, false);
+    let mut cases = gray_cases(size, Fill::ALL, bytemuck::bytes_of(&params), &[], &[half.stride()], half);
+    // Gray levels of 8 bits, which have whole sums.
+    let whole = cases.iter().take(3).map(|case| Case {
+        name: format!("{}, whole", case.name),
+        params: bytemuck::bytes_of(&Params::new(size, true)).to_vec(),
+        inputs: vec![case.inputs[0].iter().map(|value| (value / 257.0).round()).collect()],
+        ..case.clone()
+    });
+    let whole: Vec<Case> = whole.collect();
+    cases.extend(whole);
+    cases
 }

@@ -191,10 +191,9 @@ fn misfit(
     window.pixels(image, dimensions, 0, pixels);
     window.sample(pixels, samples);
     let [gray, i_x, i_y] = [0, 1, 2].map(|k| patch.channel(k));
-    let samples = &samples[..patch.area];
-    let sums = lane_sums(patch.area, #[inline(always)] |k| {
-        let d = samples[k] - gray[k];
-        [i_x[k] * d, i_y[k] * d, d.abs()]
+    let sums = lane_sums([&samples[..patch.area], gray, i_x, i_y], #[inline(always)] |[sample, gray, i_x, i_y]| {
+        let d = sample - gray;
+        [i_x * d, i_y * d, d.abs()]
     });
     sums.map(|sum| sum / patch.area as f32)
 }

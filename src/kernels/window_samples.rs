@@ -63,24 +63,35 @@ impl Window {
         let (side, [x, y]) = (self.columns + 1, self.part);
         for (j, out) in out.chunks_exact_mut(self.columns).take(self.rows).enumerate() {
             let (above, below) = pixels[j * side..][..2 * side].split_at(side);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = (1.0 - y) * ((1.0 - x) * above[i] + x * above[i + 1])
-                    + y * ((1.0 - x) * below[i] + x * below[i + 1]);
+            let above = above.iter().zip(&above[1..]);
+            let below = below.iter().zip(&below[1..]);
+            for (out, ((a, b), (c, d))) in out.iter_mut().zip(above.zip(below)) {
+                *out = (1.0 - y) * ((1.0 - x) * a + x * b) + y * ((1.0 - x) * c + x * d);
             }
         }
     }
 }
 
-/// Sums as the invocations of a workgroup do: every 64th value, then eight sums of eight, then their sum.
+/// Sums of values that `f` makes of equally long inputs, as the invocations of a workgroup add them: every 64th, then
+/// eight sums of eight, then their sum.
 #[inline(always)]
-pub(super) fn lane_sums<const N: usize>(count: usize, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
+pub(super) fn lane_sums<const M: usize, const N: usize>(
+    inputs: [&[f32]; M],
+    f: impl Fn([f32; M]) -> [f32; N],
+) -> [f32; N] {
     let mut lanes = [[0.0f32; LANES]; N];
-    for first in (0..count).step_by(LANES) {
-        for lane in 0..LANES.min(count - first) {
-            for (lanes, value) in lanes.iter_mut().zip(value(first + lane)) {
-                lanes[lane] += value;
-            }
+    let whole = inputs[0].len() / LANES;
+    let chunks = inputs.map(|input| input.as_chunks::<LANES>());
+    for k in 0..whole {
+        let chunk = chunks.map(|(chunks, _)| &chunks[k]);
+        for lane in 0..LANES {
+            let values = f(chunk.map(|chunk| chunk[lane]));
+            (0..N).for_each(|n| lanes[n][lane] += values[n]);
         }
+    }
+    for lane in 0..inputs[0].len() - whole * LANES {
+        let values = f(chunks.map(|(_, rest)| rest[lane]));
+        (0..N).for_each(|n| lanes[n][lane] += values[n]);
     }
     lanes.map(|lanes| {
         let eighths =

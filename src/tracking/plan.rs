@@ -26,7 +26,8 @@ pub fn pyramid(size: Size, parameters: &TrackParameters) -> Vec<Size> {
 }
 
 /// The plan that follows up to `capacity` points from the previous frame into the current one, and with `backward` back
-/// again.
+/// again. As in OpenCV, the pyramid's levels of 8-bit frames are rounded to whole gray levels; those of 16-bit frames are
+/// not.
 ///
 /// Inputs are `frame`; `points`, for each point x and y in pixels of the previous frame, 1, and 0; and `initial`, for each
 /// point x and y where the search begins, 1, and 0. Points beyond those given are zeros, and absent. Outputs are `tracked`
@@ -73,7 +74,7 @@ pub fn plan(
         let mut steps = vec![gray_step(size, format, frame, follow.images[0][parity])];
         for (k, pair) in follow.images.windows(2).enumerate() {
             let shape = Shape::planar(follow.levels[k + 1], 1);
-            let params = pyr_down::Params::new(follow.levels[k]);
+            let params = pyr_down::Params::new(follow.levels[k], format != PixelFormat::Gray16);
             let label = format!("level {}", k + 1);
             steps.push(Step::new(
                 &pyr_down::KERNEL,

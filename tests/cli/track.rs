@@ -145,7 +145,7 @@ fn bad_input_is_one_line() {
         refused(&folder, args, words);
     }
     for (args, words) in [
-        (&["--window", "73"][..], &["--window is 73×73", "96×72"][..]),
+        (&["--window", "97x20"][..], &["--window is 97×20", "96×72"][..]),
         (&["--window", "2"], &["--window is 2×2"]),
         (&["--window", "big"], &["window is \"big\""]),
         (&["--epsilon", "NaN"], &["--epsilon is NaN"]),

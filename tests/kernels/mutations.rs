@@ -208,6 +208,7 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&pyr_down::KERNEL, "+ 4.0 * d", "+ 4.001 * d"),
     (&pyr_down::KERNEL, "reflect_101(x + 2, n)", "reflect_101(x + 1, n)"),
     (&pyr_down::KERNEL, "first - 2", "first - 1"),
+    (&pyr_down::KERNEL, "floor(value + 0.5)", "floor(value)"),
     (&patches::KERNEL, "(ys >= vec2i())", "(ys >= vec2i(-1))"),
     (&patches::KERNEL, "0.5 * (window - 1.0)", "0.5 * window"),
     (&patches::KERNEL, "whole >= -window", "whole > -window"),
