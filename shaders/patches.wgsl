@@ -34,13 +34,16 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
     let there = point.z > 0.0 && all(whole >= -window) && all(whole < size);
     let corner = vec2i(select(vec2f(), whole, there));
     let part = place - whole;
+    let end = corner + vec2i(vec2u(params.window_width, params.window_height));
+    // Most windows lie inside, where nothing is mirrored.
+    let interior = all(corner >= vec2i(1)) && all(end + 1 < vec2i(vec2u(params.width, params.height)));
     var sum = vec4f();
     for (var k = local.x; k < min(stride, MAX_SAMPLES); k += LANES) {
         // The surplus repeats the last sample.
         let sample = min(k, area - 1u);
         var value = vec3f();
         if there {
-            value = sampled(corner + offset(sample), part);
+            value = sampled(corner + offset(sample), part, interior);
         }
         let at = 3u * group.y * stride + k;
         patches[at] = value.x;
@@ -55,16 +58,20 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local
 }
 
 // Gray level and gradient between a pixel and its neighbours to the right and below.
-fn sampled(pixel: vec2i, part: vec2f) -> vec3f {
+fn sampled(pixel: vec2i, part: vec2f, interior: bool) -> vec3f {
     let n = vec2i(i32(params.width), i32(params.height));
-    let columns = vec4u(
-        reflect_101(pixel.x - 1, n.x), reflect_101(pixel.x, n.x),
-        reflect_101(pixel.x + 1, n.x), reflect_101(pixel.x + 2, n.x),
-    );
-    let a = four(columns, pixel.y - 1);
-    let b = four(columns, pixel.y);
-    let c = four(columns, pixel.y + 1);
-    let d = four(columns, pixel.y + 2);
+    let first = vec2u(pixel - 1);
+    var columns = first.x + vec4u(0u, 1u, 2u, 3u);
+    var rows = first.y + vec4u(0u, 1u, 2u, 3u);
+    if !interior {
+        columns = four_mirrored(pixel.x - 1, n.x);
+        rows = four_mirrored(pixel.y - 1, n.y);
+    }
+    rows *= (params.width + 3u) / 4u * 4u;
+    let a = four(columns, rows.x);
+    let b = four(columns, rows.y);
+    let c = four(columns, rows.z);
+    let d = four(columns, rows.w);
     // Gradients of the four pixels, 32 times too large: those of the upper two, those of the lower two.
     let upper_x = 3.0 * ((a.zw - a.xy) + (c.zw - c.xy)) + 10.0 * (b.zw - b.xy);
     let lower_x = 3.0 * ((b.zw - b.xy) + (d.zw - d.xy)) + 10.0 * (c.zw - c.xy);
@@ -86,8 +93,13 @@ fn sampled(pixel: vec2i, part: vec2f) -> vec3f {
     );
 }
 
-fn four(columns: vec4u, y: i32) -> vec4f {
-    let start = reflect_101(y, i32(params.height)) * ((params.width + 3u) / 4u * 4u);
+fn four_mirrored(first: i32, n: i32) -> vec4u {
+    return vec4u(
+        reflect_101(first, n), reflect_101(first + 1, n), reflect_101(first + 2, n), reflect_101(first + 3, n),
+    );
+}
+
+fn four(columns: vec4u, start: u32) -> vec4f {
     return vec4f(
         image[start + columns.x], image[start + columns.y], image[start + columns.z], image[start + columns.w],
     );

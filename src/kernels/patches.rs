@@ -48,59 +48,57 @@ fn reference(p: &Params, image: &[f32], points: &[f32], patches: &mut [f32], ten
     let window = [p.window_width, p.window_height];
     let area = (p.window_width * p.window_height) as usize;
     let padded = area.next_multiple_of(4);
-    let pixels = (p.window_width + 3) as usize * (p.window_height + 3) as usize;
-    let split = Split { second_row: 4, scratch: pixels, dearer: 8, fewest_rows: 4, ..Split::rows_of(3 * padded) };
+    let [pixels, block] = [3, 1].map(|more| ((p.window_width + more) * (p.window_height + more)) as usize);
+    let scratch = pixels + 3 * block;
+    let split = Split { second_row: 4, scratch, dearer: 8, fewest_rows: 4, ..Split::rows_of(3 * padded) };
     bands(patches, tensors, split, #[inline(always)] |band| {
         let Band { y0, out, second, scratch, .. } = band;
+        let (pixels, blocks) = scratch.split_at_mut(pixels);
         for (i, (patch, tensor)) in out.chunks_exact_mut(3 * padded).zip(second.chunks_exact_mut(4)).enumerate() {
             let point = &points[4 * (y0 + i)..][..4];
             let place = [0, 1].map(|k| point[k] * p.scale - 0.5 * (window[k] as f32 - 1.0));
             patch.fill(0.0);
             tensor.fill(0.0);
             let Some(window) = Window::at(place, window, [width, height]).filter(|_| point[2] > 0.0) else { continue };
-            let side = window.pixels(image, [width, height, stride], 1, scratch);
-            let (gray, rest) = patch.split_at_mut(padded);
-            let (i_x, i_y) = rest.split_at_mut(padded);
-            for row in 0..window.rows {
-                for column in 0..window.columns {
-                    let k = row * window.columns + column;
-                    let rows: [&[f32]; 4] = std::array::from_fn(|j| &scratch[(row + j) * side + column..][..4]);
-                    let pixel = [window.corner[0] + column as isize, window.corner[1] + row as isize];
-                    [gray[k], i_x[k], i_y[k]] = sampled(rows, window.part, pixel, [width, height]);
-                }
-            }
-            for channel in [&mut *gray, &mut *i_x, &mut *i_y] {
+            window.pixels(image, [width, height, stride], 1, pixels);
+            gradients(&window, pixels, [width, height], blocks);
+            for (block, channel) in blocks.chunks_exact(block).zip(patch.chunks_exact_mut(padded)) {
+                window.sample(block, &mut channel[..area]);
                 let last = channel[area - 1];
                 channel[area..].fill(last);
             }
-            let sums = lane_sums([&i_x[..area], &i_y[..area]], #[inline(always)] |[i_x, i_y]| [i_x * i_x, i_x * i_y, i_y * i_y]);
+            let [i_x, i_y] = [1, 2].map(|k| &patch[k * padded..][..area]);
+            let sums = lane_sums([i_x, i_y], #[inline(always)] |[i_x, i_y]| [i_x * i_x, i_x * i_y, i_y * i_y]);
             tensor[..3].copy_from_slice(&sums.map(|sum| sum / area as f32));
             tensor[3] = 1.0;
         }
     });
 }
 
-/// Gray level and gradient between the four pixels in the middle of 4 × 4, the first of which is `pixel`.
+/// Gray level and gradient of the pixels that a window's samples lie between, from those and one more on every side. There
+/// is no gradient outside an image of this width and height.
 #[inline(always)]
-fn sampled([a, b, c, d]: [&[f32]; 4], [x, y]: [f32; 2], pixel: [isize; 2], size: [usize; 2]) -> [f32; 3] {
-    let within = |k: usize, at: isize| if at >= 0 && at < size[k] as isize { 1.0 } else { 0.0 };
-    let (across, down) = ([1.0 - x, x], [1.0 - y, y]);
-    let across_within: [f32; 2] = std::array::from_fn(|k| within(0, pixel[0] + k as isize) * across[k]);
-    let down_within: [f32; 2] = std::array::from_fn(|k| within(1, pixel[1] + k as isize) * down[k]);
-    let gradient_x = |[a, b, c]: [&[f32]; 3], k: usize| {
-        3.0 * ((a[k + 2] - a[k]) + (c[k + 2] - c[k])) + 10.0 * (b[k + 2] - b[k])
-    };
-    let gradient_y =
-        |a: &[f32], c: &[f32], k: usize| 3.0 * ((c[k] - a[k]) + (c[k + 2] - a[k + 2])) + 10.0 * (c[k + 1] - a[k + 1]);
-    let mix = |upper: [f32; 2], lower: [f32; 2]| {
-        let [upper, lower] = [upper, lower].map(|of| across_within[0] * of[0] + across_within[1] * of[1]);
-        0.03125 * (down_within[0] * upper + down_within[1] * lower)
-    };
-    [
-        down[0] * (across[0] * b[1] + across[1] * b[2]) + down[1] * (across[0] * c[1] + across[1] * c[2]),
-        mix([0, 1].map(|k| gradient_x([a, b, c], k)), [0, 1].map(|k| gradient_x([b, c, d], k))),
-        mix([0, 1].map(|k| gradient_y(a, c, k)), [0, 1].map(|k| gradient_y(b, d, k))),
-    ]
+fn gradients(window: &Window, pixels: &[f32], [width, height]: [usize; 2], blocks: &mut [f32]) {
+    let [columns, rows] = [window.columns + 1, window.rows + 1];
+    let (gray, rest) = blocks.split_at_mut(columns * rows);
+    let (i_x, i_y) = rest.split_at_mut(columns * rows);
+    let within = |at: isize, side: usize| at >= 0 && at < side as isize;
+    for row in 0..rows {
+        let [a, b, c]: [&[f32]; 3] = std::array::from_fn(|j| &pixels[(row + j) * (columns + 2)..][..columns + 2]);
+        let [gray, i_x, i_y] = [&mut *gray, &mut *i_x, &mut *i_y].map(|block| &mut block[row * columns..][..columns]);
+        gray.copy_from_slice(&b[1..=columns]);
+        if !within(window.corner[1] + row as isize, height) {
+            [i_x, i_y].into_iter().for_each(|row| row.fill(0.0));
+            continue;
+        }
+        for x in 0..columns {
+            i_x[x] = 0.03125 * (3.0 * ((a[x + 2] - a[x]) + (c[x + 2] - c[x])) + 10.0 * (b[x + 2] - b[x]));
+            i_y[x] = 0.03125 * (3.0 * ((c[x] - a[x]) + (c[x + 2] - a[x + 2])) + 10.0 * (c[x + 1] - a[x + 1]));
+        }
+        for x in (0..columns).filter(|x| !within(window.corner[0] + *x as isize, width)) {
+            (i_x[x], i_y[x]) = (0.0, 0.0);
+        }
+    }
 }
 
 /// Points of an image: most inside, some near its border and beyond, the last one absent.
