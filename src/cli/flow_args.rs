@@ -133,11 +133,31 @@ impl Shared {
             true => String::new(),
             false => format!(", of {}", of.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" and ")),
         };
+        // Estimators may mean different things by a name.
+        let mut helps: Vec<(&str, Vec<&str>)> = Vec::new();
+        for (algorithm, _) in &of {
+            let known = Algorithm::named(algorithm, DEFAULT_PRESET)
+                .ok()
+                .and_then(|algorithm| help(&algorithm, parameter.name));
+            let own = known.unwrap_or(parameter.help);
+            match helps.iter_mut().find(|(help, _)| *help == own) {
+                Some((_, algorithms)) => algorithms.push(algorithm),
+                None => helps.push((own, vec![algorithm])),
+            }
+        }
+        let help = match helps.as_slice() {
+            [(help, _)] => format!("{help}{only}"),
+            several => {
+                let each =
+                    several.iter().map(|(help, algorithms)| format!("{}: {help}", algorithms.join(" and ")));
+                each.collect::<Vec<_>>().join(". ")
+            }
+        };
         let arg = Arg::new(parameter.name)
             .long(flag(parameter.name))
             .value_name(parameter.value_name)
             .allow_negative_numbers(true)
-            .help(format!("{}{only} [default: {}]", parameter.help, defaults.join(", ")));
+            .help(format!("{help} [default: {}]", defaults.join(", ")));
         match parameter.choices {
             [] => arg.value_parser(move |text: &str| legible(parameter.name, text)),
             choices => arg.value_parser(values(choices)).allow_negative_numbers(false),
@@ -151,6 +171,11 @@ fn legible(name: &str, text: &str) -> Result<String> {
         Some(mut algorithm) => algorithm.set(name, text).map(|()| text.to_owned()),
         None => Ok(text.to_owned()),
     }
+}
+
+/// What an algorithm's parameter means.
+fn help(algorithm: &Algorithm, name: &str) -> Option<&'static str> {
+    algorithm.parameters().iter().find(|parameter| parameter.name == name).map(|parameter| parameter.help)
 }
 
 /// The flag of a parameter, without its dashes.

@@ -8,6 +8,8 @@ mod coarse_to_fine;
 mod estimator;
 mod expansions;
 mod flow_plan;
+mod gradients;
+mod images;
 mod levels;
 mod normalized;
 mod parameter;
@@ -119,10 +121,12 @@ estimators!(
     ($)
     farneback: Farneback,
     farneback_tv: FarnebackTv,
+    horn_schunck: HornSchunck,
     lucas_kanade: LucasKanade,
 );
 
 pub use farneback::{Border, Motion, Outside, Update, Window};
+pub use horn_schunck::Penalty;
 
 impl Default for Algorithm {
     fn default() -> Self {

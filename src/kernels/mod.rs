@@ -68,6 +68,8 @@ registry!(
     confidence,
     warp,
     gradient_equations,
+    cubic_warp,
+    brightness_equations,
     unweight,
     structure_tensor,
     block_sum,

@@ -9,9 +9,11 @@ mod confidence;
 #[path = "../common/data.rs"]
 mod data;
 mod determinism;
+mod energy;
 mod engine;
 mod estimators;
 mod euroc;
+mod horn_schunck;
 mod imu;
 mod increments;
 #[path = "../common/need.rs"]
