@@ -5,6 +5,7 @@ struct Params {
     width: u32,
     height: u32,
     robust: f32, // inverse square of the difference up to which the weight is nearly constant; 0 for constant weights
+    prior: f32,  // added to G_xx and G_yy, which draws the increment towards 0
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -35,9 +36,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let g = w * vec2f(i_x, i_y);
     if id.x < stride && id.y < params.height {
         let at = 5u * id.y * stride + id.x;
-        equations[at] = g.x * i_x;
+        equations[at] = g.x * i_x + params.prior;
         equations[at + stride] = g.x * i_y;
-        equations[at + 2u * stride] = g.y * i_y;
+        equations[at + 2u * stride] = g.y * i_y + params.prior;
         equations[at + 3u * stride] = -g.x * i_t;
         equations[at + 4u * stride] = -g.y * i_t;
     }

@@ -10,6 +10,10 @@ use super::parameter::Parameters;
 ///
 /// It allocates its buffers and builds its steps; it runs nothing. To add one, see [`flow`](crate::flow).
 pub trait Estimator: Parameters {
+    /// Whether the flow of a pair depends on the earlier pairs of its stream, by buffers that are
+    /// [carried](Stages::carried).
+    const HAS_MEMORY: bool = false;
+
     /// Checks every parameter's range.
     ///
     /// # Errors
@@ -30,6 +34,8 @@ pub struct Wanted {
     pub certainty: bool,
     /// Whether the confidence of each pixel's flow is computed.
     pub confidence: bool,
+    /// Whether the flow leads from the later image back to the earlier one.
+    pub backward: bool,
     /// Whether the confidence of each cell of the view sphere will be computed from [`Stages::evidence`].
     pub evidence: bool,
 }
@@ -44,8 +50,9 @@ pub trait Stages {
 
     /// The steps of the images in two slots: they compute `flow`, two channels in pixels, from the first to the second.
     /// The search begins with `initial` if it was [`Wanted`](Wanted::initial_flow); otherwise `initial` may be the
-    /// buffer of `flow`.
-    fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step>;
+    /// buffer of `flow`. `parity` is that of the later image's frame, which chooses among the buffers that are
+    /// [carried](Stages::carried).
+    fn pair(&self, parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step>;
 
     /// The plane that [`Stages::pair`] fills with the confidence of each pixel's flow, 0 to 1, if it was
     /// [`Wanted`](Wanted::confidence).

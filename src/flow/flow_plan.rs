@@ -50,7 +50,8 @@ pub fn plan(algorithm: &Algorithm, size: Size, format: PixelFormat, options: Flo
     let second = if begins { bufs.computed("flow of odd frames", Shape::planar(size, 2)) } else { first };
     // A pair reads its initial flow where the previous pair has written its flow.
     let (flow, found) = ([first, second], [second, first]);
-    let wanted = Wanted { initial_flow: begins, certainty: certainty.is_some(), confidence, evidence: false };
+    let wanted =
+        Wanted { initial_flow: begins, certainty: certainty.is_some(), confidence, ..Wanted::default() };
     let stages = algorithm.stages(&mut bufs, size, wanted);
 
     let mut inputs = vec![Port::new("frame", frame_kind, frame, Fill::Required)];
@@ -76,7 +77,7 @@ pub fn plan(algorithm: &Algorithm, size: Size, format: PixelFormat, options: Flo
             steps.extend(stages.ingest(gray, certainty, parity));
             steps
         }),
-        pair: [0, 1].map(|parity| stages.pair([1 - parity, parity], found[parity], flow[parity])),
+        pair: [0, 1].map(|parity| stages.pair(parity, [1 - parity, parity], found[parity], flow[parity])),
         inputs,
         outputs,
         carried,

@@ -9,6 +9,8 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 /// The images of both slots on every level, finest first.
 pub(super) struct Images {
     levels: Vec<Level>,
+    /// The number of the finest level that is computed.
+    finest: usize,
     pyramid: Pyramid,
     /// For each level the buffers of both slots.
     images: Vec<[BufId; 2]>,
@@ -38,8 +40,9 @@ pub(super) struct LevelImage {
 }
 
 impl Images {
-    /// Allocates the buffers for images of this size and these levels, finest first.
-    pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level], wanted: Wanted) -> Self {
+    /// Allocates the buffers for images of this size and these levels, finest first, of which the first `finest` are left
+    /// out.
+    pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level], finest: usize, wanted: Wanted) -> Self {
         let plane = Shape::planar(size, 1);
         let of_levels = |bufs: &mut Bufs, name: &str| -> Vec<[BufId; 2]> {
             let image = |bufs: &mut Bufs, k: usize, level: &Level, frames: &str| {
@@ -50,6 +53,7 @@ impl Images {
         };
         Self {
             levels: levels.to_vec(),
+            finest,
             pyramid: Pyramid::new(bufs, size, levels),
             images: of_levels(bufs, "image"),
             certainty: if wanted.certainty {
@@ -77,7 +81,7 @@ impl Images {
     pub(super) fn steps(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
         let mut steps = Vec::new();
         let (Certainty::Given(weighted), Some(certainty)) = (&self.certainty, certainty) else {
-            for (k, images) in self.images.iter().enumerate() {
+            for (k, images) in self.images.iter().enumerate().skip(self.finest) {
                 self.pyramid.reduce(&mut steps, k, gray, images[slot]);
             }
             return steps;
@@ -91,7 +95,7 @@ impl Images {
             &[gray, certainty],
             &[(full, Shape::planar(size, 1)), (share, Shape::planar(size, 1))],
         ));
-        for (k, images) in self.images.iter().enumerate() {
+        for (k, images) in self.images.iter().enumerate().skip(self.finest) {
             let size = self.levels[k].size;
             let of_level = weighted.certainties[k][slot];
             self.pyramid.reduce(&mut steps, k, full, weighted.level);

@@ -114,7 +114,7 @@ impl Estimator for LucasKanade {
         let levels = levels(size, self.pyr_scale, self.levels);
         let plane = Shape::planar(size, 1);
         Box::new(LucasKanadeStages {
-            images: Images::new(bufs, size, &levels, wanted),
+            images: Images::new(bufs, size, &levels, 0, wanted),
             coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, false),
             gradients: Gradients::new(bufs, size, self.winsize, self.window == Window::Gaussian),
             confidence: (wanted.confidence || wanted.evidence).then(|| bufs.computed("confidence", plane)),
@@ -139,7 +139,7 @@ impl Stages for LucasKanadeStages {
         self.images.steps(gray, certainty, slot)
     }
 
-    fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+    fn pair(&self, _parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
         let gradients = &self.gradients;
         let pair = |k: usize| slots.map(|slot| self.images.level(k, slot));
         let mut steps = self.coarse_to_fine.steps(|_| self.iterations, initial, flow, |steps, iteration| {

@@ -78,6 +78,12 @@ macro_rules! estimators {
                 match self { $(Self::$Type(_) => <$Type>::LIST),* }
             }
 
+            /// Whether the flow of a pair depends on the earlier pairs of its stream. A first pair, and one after a reset,
+            /// has none.
+            pub fn has_memory(&self) -> bool {
+                match self { $(Self::$Type(_) => <$Type as Estimator>::HAS_MEMORY),* }
+            }
+
             /// The method's presets.
             pub fn presets(&self) -> &'static [Choice] {
                 match self { $(Self::$Type(_) => <$Type>::PRESETS),* }
@@ -121,6 +127,7 @@ estimators!(
     ($)
     farneback: Farneback,
     farneback_tv: FarnebackTv,
+    flow_filter: FlowFilter,
     horn_schunck: HornSchunck,
     lucas_kanade: LucasKanade,
 );

@@ -23,6 +23,8 @@ params! {
         /// 1 / ε²: the inverse square of the difference, in gray levels, up to which the weight is nearly constant; 0 for
         /// constant weights.
         robust: f32,
+        /// γ: what is added to G_xx and G_yy, which draws the increment towards 0, in squared gray levels per pixel.
+        prior: f32,
     }
 }
 
@@ -65,7 +67,7 @@ fn reference(p: &Params, mean: &[f32], change: &[f32], share: &[f32], equations:
                 let i_t = change[x];
                 let w = known / (1.0 + i_t * i_t * p.robust).sqrt();
                 let (w_x, w_y) = (w * i_x, w * i_y);
-                let values = [w_x * i_x, w_x * i_y, w_y * i_y, -w_x * i_t, -w_y * i_t];
+                let values = [w_x * i_x + p.prior, w_x * i_y, w_y * i_y + p.prior, -w_x * i_t, -w_y * i_t];
                 for (channel, value) in values.into_iter().enumerate() {
                     channels[channel * stride + x] = value;
                 }
@@ -85,8 +87,8 @@ fn slope([far_before, before, after, far_after]: [f32; 4], i: usize, n: usize) -
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let all = [("plain", 0.0), ("robust", 4.0)].map(|(name, robust)| {
-        let params = Params { width: size.width, height: size.height, robust };
+    let all = [("plain", 0.0, 0.0), ("robust", 4.0, 0.0), ("prior", 0.0, 64.0)].map(|(name, robust, prior)| {
+        let params = Params { width: size.width, height: size.height, robust, prior };
         let cases = each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[5 * size.stride()], size, |fill| {
             // Differences of a few gray levels are those whose robust weight varies.
             vec![

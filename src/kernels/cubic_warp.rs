@@ -5,7 +5,7 @@
 //! share that both show: the product of their certainties, the second's sampled bilinearly, and 0 outside the second
 //! image, where the mean is the first image alone and the difference 0.
 
-use super::parallel_rows::{Split, bands_of_three, clamp_index, dimensions, repeat_last};
+use super::parallel_rows::{Split, bands_of_three, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
@@ -84,18 +84,19 @@ fn between(
 ) -> [f32; 2] {
     let (left, above) = (at_x as usize, at_y as usize);
     let (f_x, f_y) = (at_x - left as f32, at_y - above as f32);
-    let near = |i: usize, n: usize| [-1, 0, 1, 2].map(|step| clamp_index(i as isize + step, n));
-    let (columns, rows) = (near(left, width), near(above, height));
-    let weighted = |weights: [f32; 4], values: [f32; 4]| {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| weights[i] * values[i]);
-        a + b + c + d
-    };
+    let columns = [left.saturating_sub(1), left, (left + 1).min(width - 1), (left + 2).min(width - 1)];
+    let rows = [above.saturating_sub(1), above, (above + 1).min(height - 1), (above + 2).min(height - 1)];
     let weights = cubic(f_x);
-    let row = |y: usize| weighted(weights, columns.map(|x| second[y * stride + x]));
-    let gray = weighted(cubic(f_y), rows.map(row));
-    let at = |y: usize, x: usize| certainty[rows[y] * stride + columns[x]];
-    let above = (1.0 - f_x) * at(1, 1) + f_x * at(1, 2);
-    let below = (1.0 - f_x) * at(2, 1) + f_x * at(2, 2);
+    let mut gray = 0.0;
+    for (y, weight) in rows.into_iter().zip(cubic(f_y)) {
+        let row = &second[y * stride..][..stride];
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| weights[i] * row[columns[i]]);
+        gray += weight * (a + b + c + d);
+    }
+    let [above, below] = [rows[1], rows[2]].map(|y| {
+        let row = &certainty[y * stride..][..stride];
+        (1.0 - f_x) * row[columns[1]] + f_x * row[columns[2]]
+    });
     [gray, (1.0 - f_y) * above + f_y * below]
 }
 

@@ -70,6 +70,8 @@ registry!(
     gradient_equations,
     cubic_warp,
     brightness_equations,
+    transport,
+    correct,
     unweight,
     structure_tensor,
     block_sum,

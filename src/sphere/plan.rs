@@ -78,7 +78,8 @@ pub(crate) fn plan(
     let motion = bufs.input("motion", MOTION_LEN);
     let found = bufs.computed("flow", Shape::planar(size, 2));
     let rotational = primed.then(|| bufs.computed("rotational flow", Shape::planar(size, 2)));
-    let wanted = Wanted { initial_flow: primed, certainty, confidence: false, evidence: true };
+    let wanted =
+        Wanted { initial_flow: primed, certainty, backward: true, evidence: true, ..Wanted::default() };
     let stages = algorithm.stages(&mut bufs, size, wanted);
     let aggregate = Aggregation::new(&mut bufs, view, cameras.ideal, &cells, &grid, fields);
 
@@ -110,7 +111,7 @@ pub(crate) fn plan(
         if let Some(rotational) = rotational {
             steps.push(rotational_flow_step(cameras.ideal, motion, rotational));
         }
-        steps.extend(stages.pair(slots, rotational.unwrap_or(found), found));
+        steps.extend(stages.pair(parity, slots, rotational.unwrap_or(found), found));
         let evidence = stages.evidence(slots);
         let certainty = [rectify.certainty, rectify.turned.map_or(rectify.certainty, |map| map.certainty)];
         let turn = if rectify.turned.is_some() { rectify.still } else { motion };

@@ -50,12 +50,22 @@ pub(crate) fn flow(
 }
 
 /// The flow from the first image to the second, with further inputs.
-///
-/// All computed buffers are poisoned first, so that a step that reads an unwritten value is found.
 pub(crate) fn flow_with(
     on: On<'_>,
     algorithm: impl Into<Algorithm>,
     images: [&Image; 2],
+    beside: Beside<'_>,
+) -> FlowField {
+    flow_of_last(on, algorithm, &images, beside)
+}
+
+/// The flow of the last pair of a stream, with further inputs, which are those of all frames of its parity.
+///
+/// All computed buffers are poisoned first, so that a step that reads an unwritten value is found.
+pub(crate) fn flow_of_last(
+    on: On<'_>,
+    algorithm: impl Into<Algorithm>,
+    images: &[&Image],
     beside: Beside<'_>,
 ) -> FlowField {
     let Beside { initial_flow, certainty } = beside;
@@ -69,22 +79,30 @@ pub(crate) fn flow_with(
     let steps = [0, 1].into_iter().flat_map(|parity| plan.steps(parity));
     let outputs = steps.flat_map(|step| step.outputs.iter().map(|(id, _)| *id));
     let computed: Vec<_> = outputs.filter(|id| plan.buf(*id).content == Content::Computed).collect();
+    let carried = plan.carried.clone();
     let mut runner = Runner::new(&on.backend(), plan).unwrap_or_else(|error| panic!("{error}"));
     for id in computed {
         let len = runner.plan().buf(id).len;
         runner.write(id, &vec![POISON; len]);
     }
-    for parity in [0, 1] {
-        let frame = images[parity].frame().unwrap_or_else(|error| panic!("{error}"));
+    // The first pair has parity 1, and finds nothing carried.
+    for [_, id] in carried {
+        let len = runner.plan().buf(id).len;
+        runner.write(id, &vec![0.0; len]);
+    }
+    let mut last = None;
+    for (i, image) in images.iter().enumerate() {
+        let parity = i % 2;
+        let frame = image.frame().unwrap_or_else(|error| panic!("{error}"));
         let given = [
             ("frame", Some(Value::Frame(&frame))),
             ("certainty", certainty.map(|planes| Value::Plane(planes[parity]))),
             ("initial_flow", initial_flow.map(Value::Flow)),
         ];
-        let outputs = runner.frame(parity, parity == 1, &given).unwrap_or_else(|error| panic!("{error}"));
-        if parity == 1 {
-            return outputs.flow("flow").expect("the plan has this output").clone();
+        let outputs = runner.frame(parity, i > 0, &given).unwrap_or_else(|error| panic!("{error}"));
+        if i > 0 {
+            last = outputs.flow("flow").cloned();
         }
     }
-    unreachable!("the second frame makes a pair")
+    last.expect("the second frame makes a pair")
 }

@@ -7,12 +7,12 @@ use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
     ALL, affine_columns, binomial, block_sum, brightness_equations, cast, cell_confidence, cell_mean, cells,
-    compare, confidence, corner_response, cubic_warp, downsample_flow, expansion_x, expansion_y,
+    compare, confidence, corner_response, correct, cubic_warp, downsample_flow, expansion_x, expansion_y,
     expected_slope, fit_weight, gradient_equations, links, local_maxima, looming, luma, misfit, nonlocal,
     normal_equations, normalized_expansion_x, normalized_expansion_y, patches, premultiply, pyr_down, remap,
     resample_x, resample_y, residual, robust_equations, rotational_flow, row_maximum, sectors, sensor, shade,
     slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, structure_tensor, sweep,
-    track_points, undistort_map, unweight, upsample, warp, weighted_normal_equations,
+    track_points, transport, undistort_map, unweight, upsample, warp, weighted_normal_equations,
     weighted_robust_equations, window_y,
 };
 
@@ -117,6 +117,13 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&brightness_equations::KERNEL, "i > 1u && i + 2u < n", "i > 0u && i + 2u < n"),
     (&brightness_equations::KERNEL, ", share[own])", ", 1.0)"),
     (&brightness_equations::KERNEL, "i_t * i_t * params.robust", "i_t * params.robust"),
+    (&brightness_equations::KERNEL, "g.y * i_y + params.prior", "g.y * i_y"),
+    (&transport::KERNEL, "params.sense * d", "d"),
+    (&transport::KERNEL, "0.75 - f * f", "0.75 - 0.9 * f * f"),
+    (&transport::KERNEL, "min(i + 1u, n - 1u)", "i"),
+    (&correct::KERNEL, "max(magnitude - params.threshold, 0.0)", "(magnitude - params.threshold)"),
+    (&correct::KERNEL, "min(left + 1u, params.in_width - 1u)", "left"),
+    (&correct::KERNEL, "params.scale * max", "max"),
     (&sweep::KERNEL, "sweep < 2", "sweep < 1"),
     (&sweep::KERNEL, "p.links.w * tile", "p.links.z * tile"),
     (&sweep::KERNEL, "- RIM;", "- RIM + 1;"),

@@ -5,6 +5,7 @@
 mod approach;
 mod courses;
 mod flight;
+mod flow_filter;
 mod measured_flow;
 #[path = "../common/need.rs"]
 mod need;

@@ -234,7 +234,7 @@ impl Stages for FarnebackStages {
         self.expansions.steps(gray, certainty.or(self.certain), slot)
     }
 
-    fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+    fn pair(&self, _parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
         self.displacement.steps(&self.expansions, slots, initial, flow)
     }
 

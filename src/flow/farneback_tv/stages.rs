@@ -342,7 +342,7 @@ impl Stages for FarnebackTvStages {
         self.expansions.steps(gray, certainty, slot)
     }
 
-    fn pair(&self, [first, second]: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+    fn pair(&self, _parity: usize, [first, second]: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
         let pair = |k: usize| [self.expansions.levels[k][first], self.expansions.levels[k][second]];
         let iterations = |k: usize| self.iterations(k);
         let mut steps = self.coarse_to_fine.steps(iterations, initial, flow, |steps, iteration| {

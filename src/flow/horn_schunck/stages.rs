@@ -45,7 +45,7 @@ impl HornSchunckStages {
         Self {
             config: config.clone(),
             size,
-            images: Images::new(bufs, size, &levels, wanted),
+            images: Images::new(bufs, size, &levels, 0, wanted),
             coarse_to_fine: CoarseToFine::new(bufs, &levels, config.pyr_scale, wanted, true),
             mean: bufs.computed("mean of both images", one),
             change: bufs.computed("change", one),
@@ -99,7 +99,7 @@ impl HornSchunckStages {
         steps.push(Step::new(
             &brightness_equations::KERNEL,
             label.clone(),
-            brightness_equations::Params { width, height, robust },
+            brightness_equations::Params { width, height, robust, prior: 0.0 },
             &[self.mean, self.change, self.share],
             &[(self.equations, five)],
         ));
@@ -128,7 +128,7 @@ impl Stages for HornSchunckStages {
         self.images.steps(gray, certainty, slot)
     }
 
-    fn pair(&self, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+    fn pair(&self, _parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
         let pair = |k: usize| slots.map(|slot| self.images.level(k, slot));
         let iterations = self.config.warps * self.runs();
         let mut steps = self.coarse_to_fine.steps(|_| iterations, initial, flow, |steps, iteration| {
