@@ -26,6 +26,9 @@ pub(super) struct Task {
 
 pub(super) fn run(args: &DataArgs, output: &Output<'_>) -> Result<Outcome> {
     let runs = runs(args)?;
+    if let Some(run) = runs.iter().find(|run| run.algorithm().has_memory() && !args.quiet) {
+        print::note(format_args!("{run}: each pair is computed alone, as the first one of a stream"));
+    }
     output.check()?;
     let tasks = args.shard.part(tasks(args)?);
     let mut backends = args.backend.open(args.quiet)?;
