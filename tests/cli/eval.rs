@@ -156,6 +156,22 @@ fn every_kind_of_set_is_read() {
 }
 
 #[test]
+fn flags_of_the_other_form_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    middlebury(&at.join("mb"));
+    let truth = "mb/One/flow10.flo";
+    let single = ["eval", "--truth", truth, truth];
+    assert_eq!(program(at, &single).code, Some(0));
+    for flags in [&["--csv", "x.csv"][..], &["--html", "x.html"], &["-o", "x"], &["--run", "farneback"]] {
+        let ended = program(at, &[&single, flags].concat());
+        assert!(ended.code == Some(2) && ended.stderr.contains("--data"), "{flags:?}: {}", ended.stderr);
+    }
+    let ended = eval(at, &["--data", "mb", "--run", "farneback:fast", "--mask", "none.png"]);
+    assert!(ended.code == Some(2) && ended.stderr.contains("--truth"), "{}", ended.stderr);
+}
+
+#[test]
 fn the_literatures_errors_stand_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

@@ -156,12 +156,49 @@ impl Eval {
     pub(super) fn run(&self) -> Result<Outcome> {
         match (&self.command, &self.truth) {
             (Some(Command::Merge(merge)), _) => merge.run(),
-            (None, Some(truth)) => self.single(truth),
+            (None, Some(truth)) => {
+                self.refuse_flags_of_data_sets()?;
+                self.single(truth)
+            }
             (None, None) if self.data.data.is_empty() => {
                 let expected = "--truth FILE ESTIMATE, --data FOLDER, or merge; see viewsphere eval --help";
                 Err(Error::parameter("what to evaluate", "missing", expected))
             }
-            (None, None) => sets::run(&self.data, &self.output()),
+            (None, None) => {
+                let single = [("--mask", &self.mask), ("flow field to evaluate", &self.estimate)];
+                match single.into_iter().find_map(|(name, path)| Some((name, path.as_ref()?))) {
+                    None => sets::run(&self.data, &self.output()),
+                    Some((name, path)) => {
+                        Err(Error::parameter(name, path.display(), "--truth FILE, or neither with --data"))
+                    }
+                }
+            }
+        }
+    }
+
+    /// With a single flow field the flags of data sets would do nothing.
+    fn refuse_flags_of_data_sets(&self) -> Result<()> {
+        let DataArgs {
+            run, algorithm, preset, pairs, kind, baseline, output, csv, html, table, shard, ..
+        } = &self.data;
+        let flags = [
+            ("--run", !run.is_empty()),
+            ("--algorithm", !algorithm.is_empty()),
+            ("--preset", !preset.is_empty()),
+            ("--pairs", !pairs.is_empty()),
+            ("--kind", kind.is_some()),
+            ("--baseline", baseline.is_some()),
+            ("--output", output.is_some()),
+            ("--csv", csv.is_some()),
+            ("--html", html.is_some()),
+            ("--table", table.is_some()),
+            ("--shard", *shard != Shard::ALL),
+        ];
+        match flags.into_iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((flag, _)) => {
+                Err(Error::parameter(flag, "given", "--data FOLDER, or no such flag with --truth"))
+            }
         }
     }
 
