@@ -19,6 +19,7 @@ mod flow_args;
 mod fly;
 mod input;
 mod print;
+mod progress;
 mod run;
 mod simulate;
 mod track;

@@ -109,7 +109,7 @@ impl Classes {
     /// Finds the classes of a pair from its first frame and its truth. A pixel whose true flow is unknown has none.
     ///
     /// # Errors
-    /// As in [`GroundTruth::validate`]; [`Error::SizeMismatch`](crate::Error::SizeMismatch) for a frame of another size.
+    /// As in [`GroundTruth::validate`]; [`Error::SizeMismatch`](crate::Error::SizeMismatch) if the frame and the truth differ in size.
     pub fn new(first: &Frame<'_>, truth: &GroundTruth) -> Result<Self> {
         truth.validate()?;
         super::metrics::check_size("first frame", first.size(), truth.flow.size)?;

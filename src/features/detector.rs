@@ -9,7 +9,7 @@ use crate::kernels::{block_sum, corner_response, local_maxima, row_maximum, stru
 use crate::plan::{Bufs, Fill, Plan, Port, PortKind, Shape, Step, Value};
 use crate::runner::Runner;
 
-/// The plan from a frame to its corner response.
+/// The plan that computes a frame's corner response.
 ///
 /// Inputs are `frame` and `mask`, a plane that is over 0 where corners may lie (everywhere if it is not given). Outputs are
 /// `response`, a plane; `maxima`, a plane of the response at local maxima and 0 elsewhere; and `row_maximum`, four equal

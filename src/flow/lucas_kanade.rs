@@ -39,18 +39,14 @@ impl Default for LucasKanade {
 
 const WINDOWS: [(&str, Window); 2] = [("box", Window::Box), ("gaussian", Window::Gaussian)];
 
-const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
-    Parameter { name, value_name, help, choices: &[] }
-}
-
 impl Parameters for LucasKanade {
     const NAME: &'static str = "lucas-kanade";
     const ABOUT: &'static str = "image gradients at every pixel, pyramidal with warping";
     const LIST: &'static [Parameter] = &[
-        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
-        number("levels", "N", "Levels beside the full image, 0 to 32"),
-        number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
-        number("iterations", "N", "Iterations on each level, 1 to 1000"),
+        Parameter::number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        Parameter::number("levels", "N", "Levels beside the full image, 0 to 32"),
+        Parameter::number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
+        Parameter::number("iterations", "N", "Iterations on each level, 1 to 1000"),
         Parameter {
             name: "window",
             value_name: "NAME",

@@ -18,6 +18,18 @@ pub struct Parameter {
     pub choices: &'static [Choice],
 }
 
+impl Parameter {
+    /// A number.
+    pub(crate) const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Self {
+        Self { name, value_name, help, choices: &[] }
+    }
+
+    /// One of several named values.
+    pub(crate) const fn choice(name: &'static str, help: &'static str, choices: &'static [Choice]) -> Self {
+        Self { name, value_name: "NAME", help, choices }
+    }
+}
+
 /// A named value and its meaning, in one line.
 pub type Choice = (&'static str, &'static str);
 

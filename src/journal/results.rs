@@ -202,7 +202,7 @@ pub(super) fn line(path: &Path, result: &impl Entry) -> Result<String> {
     result.to_line().map_err(|error| Error::io(path, io::Error::other(error)))
 }
 
-/// A value as a line of JSON; an error names the file.
+/// The value as JSON on one line; errors name the file.
 pub(super) fn json(path: &Path, value: &impl Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(|error| Error::io(path, io::Error::other(error)))
 }

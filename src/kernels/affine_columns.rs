@@ -44,13 +44,14 @@ kernel!(
 fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32]) {
     let (_, height, stride) = dimensions(p.width, p.height);
     let radius = p.radius as usize;
-    let weights = powers(&window[..2 * radius + 1], p.radius, p.step);
-    let split = Split { dearer: 4, ..Split::rows_of(CHANNELS * stride) };
+    let taps = 2 * radius + 1;
+    let split = Split { scratch: 2 * taps, dearer: 4, ..Split::rows_of(CHANNELS * stride) };
     bands(columns, &mut [], split, #[inline(always)] |band| {
+        let weights = powers(&window[..taps], p.step, band.scratch);
         for (i, rows) in band.out.chunks_exact_mut(CHANNELS * stride).enumerate() {
             let y = band.y0 + i;
             // The window's rows inside the image.
-            let (begin, end) = (radius.saturating_sub(y), (2 * radius + 1).min(height + radius - y));
+            let (begin, end) = (radius.saturating_sub(y), taps.min(height + radius - y));
             let source = |k: usize| &equations[(y + begin + k - radius) * 5 * stride..][..5 * stride];
             let (one, rest) = rows.split_at_mut(5 * stride);
             let (first, second) = rest.split_at_mut(5 * stride);
@@ -61,13 +62,18 @@ fn reference(p: &Params, equations: &[f32], window: &[f32], columns: &mut [f32])
     });
 }
 
-/// A window's weights times 1, t and t².
-pub(super) fn powers(window: &[f32], radius: u32, step: f32) -> [Vec<f32>; 3] {
-    let t: Vec<f32> = (0..window.len()).map(|k| (k as f32 - radius as f32) * step).collect();
-    let times_t = |weights: &[f32]| -> Vec<f32> { weights.iter().zip(&t).map(|(w, t)| w * t).collect() };
-    let first = times_t(window);
-    let second = times_t(&first);
-    [window.to_vec(), first, second]
+/// A window's weights times 1, t and t². `room` holds two values per weight.
+#[inline(always)]
+pub(super) fn powers<'a>(window: &'a [f32], step: f32, room: &'a mut [f32]) -> [&'a [f32]; 3] {
+    let radius = (window.len() / 2) as f32;
+    let (first, second) = room.split_at_mut(window.len());
+    let second = &mut second[..window.len()];
+    for (k, weight) in window.iter().enumerate() {
+        let t = (k as f32 - radius) * step;
+        first[k] = weight * t;
+        second[k] = first[k] * t;
+    }
+    [window, first, second]
 }
 
 fn cases(size: Size) -> Vec<Case> {

@@ -76,11 +76,13 @@ fn each_row(
 ) {
     let (width, _, stride) = dimensions(p.width, p.height);
     let radius = p.radius as usize;
-    let weights = powers(&window[..2 * radius + 1], p.radius, p.step);
+    let taps = 2 * radius + 1;
     let padded = width + 2 * radius;
-    let split = Split { scratch: padded + SUMS * width, dearer: 16, ..Split::rows_of(channels * stride) };
+    let split = Split { scratch: 2 * taps + padded + SUMS * width, dearer: 16, ..Split::rows_of(channels * stride) };
     bands(result, &mut [], split, #[inline(always)] |band| {
-        let (extended, sums) = band.scratch.split_at_mut(padded);
+        let (room, scratch) = band.scratch.split_at_mut(2 * taps);
+        let weights = powers(&window[..taps], p.step, room);
+        let (extended, sums) = scratch.split_at_mut(padded);
         // Columns outside the image have no weight.
         extended.fill(0.0);
         for (i, rows) in band.out.chunks_exact_mut(channels * stride).enumerate() {
@@ -91,7 +93,7 @@ fn each_row(
                     let row = &columns[(CHANNELS * y + first + channel) * stride..][..width];
                     extended[radius..radius + width].copy_from_slice(row);
                     let Some(sum) = sums_left.next() else { unreachable!("there are 24 sums") };
-                    weighted_sum(sum, &weights[power], |k| &extended[k..][..width]);
+                    weighted_sum(sum, weights[power], |k| &extended[k..][..width]);
                 }
             }
             f(y, sums, rows);

@@ -37,8 +37,10 @@ kernel!(
     },
 );
 
+/// Sweeps per run.
+pub const SWEEPS: u32 = 2;
 /// Half sweeps per run, which is how far a pixel's influence reaches.
-const HALF_SWEEPS: usize = 4;
+const HALF_SWEEPS: usize = 2 * SWEEPS as usize;
 
 fn reference(p: &Params, system: &[f32], link: &[f32], flow: &[f32], relaxed: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);

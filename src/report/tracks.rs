@@ -16,19 +16,19 @@ const ENDED: [u8; 3] = [255, 60, 60];
 /// Half the length of a cross, in pixels.
 const ARM: f64 = 2.0;
 
-/// Draws tracks over their frames: the frame in gray, each track's way over the last frames as a line in a colour of its
-/// own with a cross at its place, white where it is new, and a red cross where it ends.
+/// Draws tracks over their frames: the frame in gray, each track's path over the last frames as a line in its own colour,
+/// with a cross at its place, white where it is new, and a red cross where it ends.
 #[derive(Debug, Default)]
 pub struct TrackOverlay {
-    /// The frames over which a track's way is drawn.
+    /// The number of frames over which a track's path is drawn.
     frames: usize,
-    ways: HashMap<u64, VecDeque<[f64; 2]>>,
+    paths: HashMap<u64, VecDeque<[f64; 2]>>,
 }
 
 impl TrackOverlay {
-    /// An overlay that draws ways over this many frames, beside the current one.
+    /// An overlay that draws paths over this many frames, beside the current one.
     pub fn new(frames: usize) -> Self {
-        Self { frames, ways: HashMap::new() }
+        Self { frames, paths: HashMap::new() }
     }
 
     /// Draws a frame's tracks, as [`PixelFormat::Rgb8`](crate::frame::PixelFormat::Rgb8).
@@ -41,17 +41,18 @@ impl TrackOverlay {
             }
             if !track.status.is_live() {
                 // The place where a search was lost means nothing: the cross stands where the track was last.
-                let last = self.ways.remove(&track.id).and_then(|way| way.back().copied()).unwrap_or(place);
+                let last =
+                    self.paths.remove(&track.id).and_then(|path| path.back().copied()).unwrap_or(place);
                 cross(&mut image, last, ENDED);
                 continue;
             }
-            let way = self.ways.entry(track.id).or_default();
-            way.push_back(place);
-            while way.len() > self.frames + 1 {
-                way.pop_front();
+            let path = self.paths.entry(track.id).or_default();
+            path.push_back(place);
+            while path.len() > self.frames + 1 {
+                path.pop_front();
             }
             let colour = COLOURS[(track.id % COLOURS.len() as u64) as usize];
-            for (from, to) in way.iter().zip(way.iter().skip(1)) {
+            for (from, to) in path.iter().zip(path.iter().skip(1)) {
                 line(&mut image, *from, *to, colour);
             }
             cross(&mut image, place, if track.status == TrackStatus::New { NEW } else { colour });
@@ -72,7 +73,7 @@ mod tests {
     use crate::frame::{PixelFormat, Size};
 
     #[test]
-    fn a_way_ends_at_its_track_and_is_forgotten_with_it() {
+    fn a_path_ends_at_its_track_and_is_forgotten_with_it() {
         let size = Size::new(32, 16);
         let data = vec![40; size.pixels()];
         let frame = Frame::new(size, PixelFormat::Gray8, &data).unwrap();
@@ -96,6 +97,6 @@ mod tests {
         assert_eq!((colour(&third, 16), colour(&third, 8)), (COLOURS[1], [40; 3]));
         let last = overlay.draw(&frame, &[track(1e9, TrackStatus::Lost)]);
         assert_eq!((colour(&last, 20), colour(&last, 16)), (ENDED, [40; 3]));
-        assert!(overlay.ways.is_empty());
+        assert!(overlay.paths.is_empty());
     }
 }

@@ -1,7 +1,8 @@
 //! Runs any plan on a stream of frames in real time, with bounded waiting and bounded memory.
 //!
 //! A stream of frames is computed pair by pair, each frame with the previous one. The results of a frame alone are kept
-//! for the next pair. The result of a pair equals, bit for bit, that of a stream of these two frames only.
+//! for the next pair. If the plan carries nothing from pair to pair, the result of a pair equals, bit for bit, that of a
+//! stream of these two frames only.
 //!
 //! On the GPU the computation of a frame starts at its submission, while the host goes on. On the CPU `submit` copies
 //! the frame, and [`Stream::poll`] and [`Stream::wait`] compute it on the threads of rayon's pool.

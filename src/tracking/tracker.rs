@@ -136,7 +136,8 @@ impl Tracker {
             let expected = format_args!("at most max_corners, {}", self.config.corners.max_corners);
             return Err(Error::parameter("number of points", points.len(), expected));
         }
-        if let Some((i, [x, y])) = points.iter().enumerate().find(|(_, point)| !self.is_inside(**point)) {
+        if let Some((i, [x, y])) = points.iter().enumerate().find(|(_, point)| !is_inside(**point, self.size))
+        {
             let expected = format_args!("a place inside the frame of {}", self.size);
             return Err(Error::parameter("points", format_args!("({x}, {y}) at index {i}"), expected));
         }
@@ -148,7 +149,7 @@ impl Tracker {
     /// (everywhere without one) is over 0. Returns the tracks of this frame by their number, those that end in it included.
     ///
     /// # Errors
-    /// [`Error::PixelFormat`] and [`Error::SizeMismatch`] for a frame or mask of another format or size;
+    /// [`Error::PixelFormat`] and [`Error::SizeMismatch`] for a frame or mask whose format or size differs from the tracker's;
     /// [`Error::DeviceLost`] if the device was lost.
     pub fn process(&mut self, frame: &Frame<'_>, mask: Option<&Plane>) -> Result<&[Track]> {
         self.tracks.retain(|track| track.status.is_live());
@@ -196,14 +197,10 @@ impl Tracker {
         let corners = self.detector.detect_beside(frame, mask, live, Some(room))?;
         Ok(corners.iter().map(|corner| [corner.x, corner.y]).collect())
     }
-
-    fn is_inside(&self, point: [f32; 2]) -> bool {
-        inside(point, self.size)
-    }
 }
 
 /// Whether a point lies between the pixels of the frame. NaN does not.
-fn inside([x, y]: [f32; 2], size: Size) -> bool {
+pub(crate) fn is_inside([x, y]: [f32; 2], size: Size) -> bool {
     let within = |at: f32, side: u32| at >= 0.0 && at <= (side - 1) as f32;
     within(x, size.width) && within(y, size.height)
 }
@@ -212,7 +209,7 @@ fn status(point: &TrackedPoint, limit: Option<f32>, size: Size) -> TrackStatus {
     let returns = |limit: f32| point.forward_backward_px.is_some_and(|error| error <= limit);
     if !point.found {
         TrackStatus::Lost
-    } else if !inside([point.x, point.y], size) {
+    } else if !is_inside([point.x, point.y], size) {
         TrackStatus::Outside
     } else if limit.is_some_and(|limit| !returns(limit)) {
         TrackStatus::Inconsistent

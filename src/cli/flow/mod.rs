@@ -7,7 +7,7 @@ pub(super) mod targets;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use self::report::Report;
 use self::source::Source;
@@ -15,6 +15,7 @@ pub(super) use self::targets::gray;
 use self::targets::{FormatArg, Pair, Targets};
 use super::backend::BackendArgs;
 use super::flow_args::FlowArgs;
+use super::progress::progress;
 use super::{Outcome, input};
 use crate::engine::{Config, Engine, FrameInputs};
 use crate::error::{Error, Result};
@@ -129,7 +130,7 @@ impl Flow {
             ..Config::default()
         };
         let mut engine = Engine::new(self.backend.open()?, size, &config)?;
-        let bar = progress(source.len());
+        let bar = progress(source.len().map(|frames| frames.saturating_sub(1)), "pairs", 1);
         let done = compute(&mut engine, source, images, given, targets, &bar);
         bar.finish_and_clear();
         let report = done?;
@@ -203,17 +204,4 @@ fn initial(path: &Path, size: Size, first: &Path) -> Result<FlowField> {
     let flow = read_flow(path)?;
     input::same_size(path, flow.size, size, first)?;
     Ok(flow)
-}
-
-/// A progress bar on standard error, where that is a terminal.
-fn progress(frames: Option<u64>) -> ProgressBar {
-    let style = |template: &str| {
-        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
-    };
-    match frames {
-        Some(2) => ProgressBar::hidden(),
-        Some(frames) => ProgressBar::new(frames.saturating_sub(1))
-            .with_style(style("{bar:40} {pos}/{len} pairs, {per_sec}, {eta} left")),
-        None => ProgressBar::new_spinner().with_style(style("{spinner} {pos} pairs, {per_sec}")),
-    }
 }

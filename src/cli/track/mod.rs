@@ -7,24 +7,25 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use self::outputs::{Places, Writers};
 use self::summary::Summary;
 use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::flow::source::Source;
+use super::progress::progress;
 use super::{Outcome, input};
 use crate::error::{Error, Result};
 use crate::features::{CornerParameters, CornerResponse};
 use crate::frame::{Image, Plane, Size};
 use crate::io::points;
-use crate::tracking::{MAX_POINTS, TrackParameters, Tracker, TrackerConfig};
+use crate::tracking::{MAX_POINTS, TrackParameters, Tracker, TrackerConfig, is_inside};
 
 /// Track corners over a sequence or video: Shi-Tomasi corners and pyramidal Lucas-Kanade.
 ///
 /// Inputs are images (PNG, JPEG, PGM, PPM), a numbered or globbed sequence, a .y4m video, or - for one on standard input.
-/// The result is a CSV of a line per track and frame: frame,track,x,y,status,fb_error_px,error. Positions are in pixels,
+/// The result is a CSV with one line per track and frame: frame,track,x,y,status,fb_error_px,error. Positions are in pixels,
 /// (0, 0) is the centre of the first pixel. Status is new, tracked, or the reason for which the track ends in this frame:
 /// lost, inconsistent (see --forward-backward) or outside. The error is the mean absolute difference of the track's
 /// windows, in gray levels. Parameters are those of OpenCV's goodFeaturesToTrack and calcOpticalFlowPyrLK.
@@ -173,7 +174,7 @@ impl TrackCommand {
         if let Some(points) = points {
             tracker.set_points(points)?;
         }
-        let bar = progress(source.len());
+        let bar = progress(source.len(), "frames", 2);
         let mut summary = Summary::new(backend.name(), size);
         let rate = source.rate().unwrap_or((30, 1));
         let done = places.with_writers(size, rate, |writers| {
@@ -203,8 +204,7 @@ impl TrackCommand {
 
 /// Checks that given points lie inside the frames.
 fn inside(path: &Path, points: &[[f32; 2]], size: Size, first: &str) -> Result<()> {
-    let within = |at: f32, side: u32| at >= 0.0 && at <= (side - 1) as f32;
-    match points.iter().find(|[x, y]| !(within(*x, size.width) && within(*y, size.height))) {
+    match points.iter().find(|point| !is_inside(**point, size)) {
         None => Ok(()),
         Some([x, y]) => {
             let expected = format_args!("a place inside the {size} of {first}");
@@ -239,18 +239,4 @@ fn follow(
         }
     }
     Ok(())
-}
-
-/// A progress bar on standard error, where that is a terminal.
-fn progress(frames: Option<u64>) -> ProgressBar {
-    let style = |template: &str| {
-        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
-    };
-    match frames {
-        Some(2) => ProgressBar::hidden(),
-        Some(frames) => {
-            ProgressBar::new(frames).with_style(style("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left"))
-        }
-        None => ProgressBar::new_spinner().with_style(style("{spinner} {pos} frames, {per_sec}")),
-    }
 }

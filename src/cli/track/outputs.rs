@@ -11,8 +11,8 @@ use crate::io::{Y4mWriter, picture, write_atomic};
 use crate::report::TrackOverlay;
 use crate::tracking::Track;
 
-/// Frames over which the overlay draws a track's way.
-const WAY: usize = 20;
+/// Frames over which the overlay draws a track's path.
+const PATH: usize = 20;
 
 /// The destinations of the results, checked before the computation starts.
 pub(super) struct Places {
@@ -82,7 +82,7 @@ impl Places {
                 finish(&mut Writers { csv: Some((&mut out, name)), overlay }, content)
             }
         };
-        let new = || TrackOverlay::new(WAY);
+        let new = || TrackOverlay::new(PATH);
         match &self.overlay {
             None => csv(None),
             Some(Place::File(path)) => write_atomic(path, |out| {

@@ -5,12 +5,13 @@ mod resample;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use self::resample::Resample;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
 use super::flow::targets::{Place, check_places, place};
+use super::progress::progress;
 use super::{Outcome, input, print};
 use crate::camera::{Camera, Framing, Lens};
 use crate::error::{Error, Result};
@@ -119,7 +120,7 @@ impl Undistort {
         }
         let Some(place) = &places.output else { return Ok(Outcome::Done) };
         let mut resample = Resample::new(&self.backend.open()?, &raw, &out)?;
-        let bar = progress(source.len());
+        let bar = progress(source.len(), "frames", 1);
         let done = frames(&mut resample, &mut source, &mut image, place, &bar);
         bar.finish_and_clear();
         done?;
@@ -205,18 +206,4 @@ fn field(raw: &Camera, image: &Image) -> Result<Image> {
         }
     }
     arrows(&image.frame()?, &flow, step, 1.0)
-}
-
-/// A progress bar on standard error, where that is a terminal.
-fn progress(frames: Option<u64>) -> ProgressBar {
-    let style = |template: &str| {
-        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
-    };
-    match frames {
-        Some(1) => ProgressBar::hidden(),
-        Some(frames) => {
-            ProgressBar::new(frames).with_style(style("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left"))
-        }
-        None => ProgressBar::new_spinner().with_style(style("{spinner} {pos} frames, {per_sec}")),
-    }
 }

@@ -22,7 +22,7 @@ impl PairFiles {
     /// Reads the pair.
     ///
     /// # Errors
-    /// [`Error::Format`] for a frame that is missing, a file of another size or pixel format than the first frame, and as in
+    /// [`Error::Format`] for a frame that is missing, a file whose size or pixel format differs from the first frame's, and as in
     /// [`picture::read`], [`read_flow`] and [`npy::read_plane`]; [`Error::Io`].
     pub fn load(&self) -> Result<LoadedPair> {
         for (path, which) in self.frames.iter().zip(["first", "second"]) {

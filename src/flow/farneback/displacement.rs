@@ -15,11 +15,11 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 const KAPPA: f32 = 0.3;
 /// ζ²: the floor of the squared slope that divides a normalised equation.
 const FLOOR: f32 = 0.04;
-/// What is added to the determinant of a window's normalised equations.
+/// What is added to the determinant of a window's normalised equations, or to the diagonal for an affine motion.
 const REGULAR: f32 = 1e-6;
 
-/// What is added to the diagonal of the normal matrix of an affine motion, and of that from normalised equations.
-const AFFINE_REGULAR: [f32; 2] = [1e-3, 1e-6];
+/// What is added to the diagonal of the normal matrix of an affine motion.
+const AFFINE_REGULAR: f32 = 1e-3;
 
 /// The buffers of this part of the plan.
 pub(super) struct Displacement {
@@ -53,6 +53,7 @@ impl Displacement {
     pub(super) fn new(bufs: &mut Bufs, config: &Farneback, levels: &[Level], wanted: Wanted) -> Self {
         let finest = levels[0].size;
         let adds = config.update != Update::Flow;
+        // The solution of an affine motion reads the flow so far beside its output, so that they are two buffers.
         let affine = config.motion == Motion::Affine;
         let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, adds || affine);
         let window = tables::window(config.winsize, config.window == Window::Gaussian);
@@ -153,7 +154,7 @@ impl Displacement {
             &[self.equations, self.window_y],
             &[(moments, Shape::planar(size, affine_columns::CHANNELS))],
         ));
-        let regular = AFFINE_REGULAR[usize::from(self.normalized)];
+        let regular = if self.normalized { REGULAR } else { AFFINE_REGULAR };
         let added = if self.adds { 1.0 } else { 0.0 };
         steps.push(Step::new(
             &solve_affine::KERNEL,

@@ -12,34 +12,26 @@ const OUTSIDES: [(&str, Outside); 2] = [("first", Outside::First), ("nothing", O
 const MOTIONS: [(&str, Motion); 2] = [("constant", Motion::Constant), ("affine", Motion::Affine)];
 const BORDERS: [(&str, Border); 2] = [("replicate", Border::Replicate), ("normalized", Border::Normalized)];
 
-const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
-    Parameter { name, value_name, help, choices: &[] }
-}
-
-const fn choice(name: &'static str, help: &'static str, choices: &'static [Choice]) -> Parameter {
-    Parameter { name, value_name: "NAME", help, choices }
-}
-
 impl Parameters for Farneback {
     const NAME: &'static str = "farneback";
     const ABOUT: &'static str = "polynomial expansions, as in OpenCV's calcOpticalFlowFarneback";
     const LIST: &'static [Parameter] = &[
-        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
-        number("levels", "N", "Levels beside the full image, 0 to 32"),
-        number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
-        number("iterations", "N", "Iterations on each level, 1 to 1000"),
-        number("poly_n", "PX", "Radius of the polynomial expansion in pixels, 1 to 32"),
-        number(
+        Parameter::number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        Parameter::number("levels", "N", "Levels beside the full image, 0 to 32"),
+        Parameter::number("winsize", "PX", "Width of the averaging window in pixels, 2 to 1024"),
+        Parameter::number("iterations", "N", "Iterations on each level, 1 to 1000"),
+        Parameter::number("poly_n", "PX", "Radius of the polynomial expansion in pixels, 1 to 32"),
+        Parameter::number(
             "poly_sigma",
             "PX",
             "Standard deviation of the expansion's Gaussian in pixels, 0 to 100; 0 is 0.3 × poly-n",
         ),
-        choice(
+        Parameter::choice(
             "window",
             "Shape of the averaging window",
             &[("box", "All neighbours have the same weight"), ("gaussian", "Near neighbours have more weight")],
         ),
-        choice(
+        Parameter::choice(
             "update",
             "Quantity that an iteration's window averages",
             &[
@@ -52,7 +44,7 @@ impl Parameters for Farneback {
                 ("normalized", "The increment of equations that are divided by their own slopes: less error still"),
             ],
         ),
-        choice(
+        Parameter::choice(
             "outside",
             "Treatment of a pixel that the flow takes outside the second image",
             &[
@@ -60,7 +52,7 @@ impl Parameters for Farneback {
                 ("nothing", "Leave the pixel out: the window's other pixels decide"),
             ],
         ),
-        choice(
+        Parameter::choice(
             "motion",
             "Model of the motion within the window",
             &[
@@ -68,7 +60,7 @@ impl Parameters for Farneback {
                 ("affine", "The motion is an affine function of the place: follows slopes of the flow in wide windows"),
             ],
         ),
-        choice(
+        Parameter::choice(
             "border",
             "Treatment of expansions that the image's border cuts off",
             &[

@@ -4,23 +4,19 @@ use super::FarnebackTv;
 use crate::error::Result;
 use crate::flow::parameter::{Choice, Parameter, Parameters, read, wrong};
 
-const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
-    Parameter { name, value_name, help, choices: &[] }
-}
-
 impl Parameters for FarnebackTv {
     const NAME: &'static str = "farneback-tv";
     const ABOUT: &'static str = "polynomial expansions with total-variation smoothness: much less error";
     const LIST: &'static [Parameter] = &[
-        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
-        number("smallest", "PX", "Shortest side of a level in pixels, 8 to 1024"),
-        number("skip", "N", "Finest levels that are left out, 0 to 8; with 1 the flow has half the size and is enlarged"),
-        number("warps", "N", "Warps on the finest level, 0 to 100"),
-        number("coarse_warps", "N", "Warps on each coarser level, 0 to 100"),
-        number("alpha", "WEIGHT", "Weight of smoothness, above 0, at most 1000; less suits thin things"),
-        number("samples", "N", "Radius of the non-local step's grid in samples, 0 to 3; 0 leaves the step out"),
-        number("spacing", "PX", "Distance of its samples in pixels, 1 to 16"),
-        number("nonlocal_scale", "RATIO", "Smallest scale of the levels that end with a non-local step, 0 to 1"),
+        Parameter::number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        Parameter::number("smallest", "PX", "Shortest side of a level in pixels, 8 to 1024"),
+        Parameter::number("skip", "N", "Finest levels that are left out, 0 to 8; with 1 the flow has half the size and is enlarged"),
+        Parameter::number("warps", "N", "Warps on the finest level, 0 to 100"),
+        Parameter::number("coarse_warps", "N", "Warps on each coarser level, 0 to 100"),
+        Parameter::number("alpha", "WEIGHT", "Weight of smoothness, above 0, at most 1000; less suits thin things"),
+        Parameter::number("samples", "N", "Radius of the non-local step's grid in samples, 0 to 3; 0 leaves the step out"),
+        Parameter::number("spacing", "PX", "Distance of its samples in pixels, 1 to 16"),
+        Parameter::number("nonlocal_scale", "RATIO", "Smallest scale of the levels that end with a non-local step, 0 to 1"),
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "Half the size, 1 warp: for slow computers"),

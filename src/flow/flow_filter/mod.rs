@@ -32,7 +32,8 @@ pub struct FlowFilter {
     /// γ: the weight of the prediction on the finest computed level, in squared gray levels per pixel, 0.01 to 100000. More
     /// averages over more frames.
     pub gamma: f64,
-    /// Width of the Gaussian window in pixels of its level, 3 to 63; its standard deviation is a fifth of that. An even width extends as far as the next odd one.
+    /// Width of the Gaussian window in pixels of its level, 3 to 63; its standard deviation is a fifth of that. An even width
+    /// extends as far as the next odd one.
     pub winsize: u32,
     /// Levels beside the full image, each half the size of the next finer one, 0 to 32. Levels whose shorter side would be
     /// under 24 pixels are left out.

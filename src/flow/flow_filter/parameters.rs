@@ -4,19 +4,15 @@ use super::FlowFilter;
 use crate::error::Result;
 use crate::flow::parameter::{Choice, Parameter, Parameters, read, wrong};
 
-const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
-    Parameter { name, value_name, help, choices: &[] }
-}
-
 impl Parameters for FlowFilter {
     const NAME: &'static str = "flow-filter";
     const ABOUT: &'static str =
         "each frame corrects a prediction from the previous flow: for streams of 60 to 300 Hz, not for lone pairs";
     const LIST: &'static [Parameter] = &[
-        number("gamma", "WEIGHT", "Weight of the prediction in squared gray levels, 0.01 to 100000; more averages over more frames"),
-        number("winsize", "PX", "Width of the Gaussian window in pixels of its level, 3 to 63"),
-        number("levels", "N", "Levels beside the full image, 0 to 32"),
-        number("skip", "N", "Finest levels that are left out, 0 to 8; with 1 the flow has half the size and is enlarged"),
+        Parameter::number("gamma", "WEIGHT", "Weight of the prediction in squared gray levels, 0.01 to 100000; more averages over more frames"),
+        Parameter::number("winsize", "PX", "Width of the Gaussian window in pixels of its level, 3 to 63"),
+        Parameter::number("levels", "N", "Levels beside the full image, 0 to 32"),
+        Parameter::number("skip", "N", "Finest levels that are left out, 0 to 8; with 1 the flow has half the size and is enlarged"),
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "A quarter of the size"),

@@ -235,6 +235,10 @@ impl Stages for FlowFilterStages {
         let mut steps = Vec::new();
         self.predict(&mut steps, parity, initial);
         let finest = self.levels[self.finest];
+        let filtered = match &self.start {
+            Start::State { state, .. } => state[1 - parity],
+            Start::Given { flow, .. } => *flow,
+        };
         for k in (self.finest..self.levels.len()).rev() {
             let level = self.levels[k];
             if let Some([x, y]) = self.of_level[k].cover {
@@ -246,12 +250,6 @@ impl Stages for FlowFilterStages {
                     &[(self.of_level[k].prediction, Shape::planar(level.size, 2))],
                 ));
             }
-        }
-        let filtered = match &self.start {
-            Start::State { state, .. } => state[1 - parity],
-            Start::Given { flow, .. } => *flow,
-        };
-        for k in (self.finest..self.levels.len()).rev() {
             let result = if k == self.finest { filtered } else { self.of_level[k].flow };
             self.update(&mut steps, k, slots.map(|slot| self.images.level(k, slot)), result);
         }

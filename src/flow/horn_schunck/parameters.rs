@@ -6,30 +6,25 @@ use crate::flow::parameter::{Choice, Parameter, Parameters, choice_name, choose,
 
 const PENALTIES: [(&str, Penalty); 2] = [("quadratic", Penalty::Quadratic), ("robust", Penalty::Robust)];
 
-const fn number(name: &'static str, value_name: &'static str, help: &'static str) -> Parameter {
-    Parameter { name, value_name, help, choices: &[] }
-}
-
 impl Parameters for HornSchunck {
     const NAME: &'static str = "horn-schunck";
     const ABOUT: &'static str = "constant brightness and a smooth flow over the whole image, pyramidal with warping";
     const LIST: &'static [Parameter] = &[
-        number("alpha", "LEVELS", "Its square is the weight of smoothness, in gray levels, 0.1 to 1000"),
-        Parameter {
-            name: "penalty",
-            value_name: "NAME",
-            help: "Penalty of both terms",
-            choices: &[
+        Parameter::number("alpha", "LEVELS", "Its square is the weight of smoothness, in gray levels, 0.1 to 1000"),
+        Parameter::choice(
+            "penalty",
+            "Penalty of both terms",
+            &[
                 ("quadratic", "The squares of 1981"),
                 ("robust", "Charbonnier's, for occlusions and edges of the flow"),
             ],
-        },
-        number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
-        number("levels", "N", "Levels beside the full image, 0 to 32"),
-        number("smallest", "PX", "Shortest side of a level in pixels, 8 to 1024"),
-        number("warps", "N", "Warps on each level, 1 to 100"),
-        number("sweeps", "N", "Sweeps of relaxation in each warp, an even number from 2 to 10000"),
-        number("omega", "RATIO", "Over-relaxation, 1 to 1.99; the more sweeps, the nearer to 2 is best"),
+        ),
+        Parameter::number("pyr_scale", "RATIO", "Size of a level relative to the next finer one, above 0 and below 1"),
+        Parameter::number("levels", "N", "Levels beside the full image, 0 to 32"),
+        Parameter::number("smallest", "PX", "Shortest side of a level in pixels, 8 to 1024"),
+        Parameter::number("warps", "N", "Warps on each level, 1 to 100"),
+        Parameter::number("sweeps", "N", "Sweeps of relaxation in each warp, an even number from 2 to 10000"),
+        Parameter::number("omega", "RATIO", "Over-relaxation, 1 to 1.99; the more sweeps, the nearer to 2 is best"),
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "2 warps of 10 sweeps on each level"),

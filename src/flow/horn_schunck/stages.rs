@@ -16,8 +16,6 @@ const BRIGHTNESS: f32 = 0.5;
 const SLOPE: f32 = 0.02;
 /// Width in pixels of the confidence's Gaussian window.
 const CONFIDENCE_WINDOW: u32 = 21;
-/// Sweeps of one run of [`sweep`].
-const SWEEPS: u32 = 2;
 
 /// The buffers and steps of the method.
 pub(super) struct HornSchunckStages {
@@ -65,7 +63,7 @@ impl HornSchunckStages {
 
     /// Runs of [`sweep`] in a warp, each of which writes the flow.
     fn runs(&self) -> u32 {
-        self.config.sweeps / SWEEPS
+        self.config.sweeps / sweep::SWEEPS
     }
 
     fn iterate(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [LevelImage; 2]) {
