@@ -1,61 +1,41 @@
-// The confidence of each cell's flow, from samples of the two frames' expansions.
+// The confidence of each cell's flow, along the direction that it is expected to have and in every direction.
 
 struct Params {
     columns: u32,
     rows: u32,
-    width: u32,
-    height: u32,
-    cell: u32, // side of a cell, pixels
-    step: u32, // distance of samples, pixels
+    pitch: vec2f,  // distance of cells in the pinhole's plane
+    origin: vec2f, // the first cell's centre there
+    focal: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> quad_0: array<vec4f>;
-@group(0) @binding(2) var<storage, read> cross_term_0: array<f32>;
-@group(0) @binding(3) var<storage, read> quad_1: array<vec4f>;
-@group(0) @binding(4) var<storage, read> cross_term_1: array<f32>;
-@group(0) @binding(5) var<storage, read> certainty_0: array<f32>;
-@group(0) @binding(6) var<storage, read> certainty_1: array<f32>;
-@group(0) @binding(7) var<storage, read> flow: array<f32>;
-@group(0) @binding(8) var<storage, read_write> confidence: array<f32>;
+// Channels: AᵀA (xx, xy, yy), the square of the residual of Δb, the share that both frames show.
+@group(0) @binding(1) var<storage, read> evidence: array<f32>;
+@group(0) @binding(2) var<storage, read> motion: array<vec4f>; // the last: direction of motion, its standard error
+@group(0) @binding(3) var<storage, read_write> confidence: array<f32>; // channels: along, every
 
 const SPAN = vec2u(1u, 1u);
-const MAX_SIDE = 64u;
+// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
+const KNOWN_RAD = 0.3;
+// The least distance from the direction of motion at which it has one, in the pinhole's plane.
+const NEAR = 0.05;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let stride = (params.width + 3u) / 4u * 4u;
-    let out_stride = (params.columns + 3u) / 4u * 4u;
+    let stride = (params.columns + 3u) / 4u * 4u;
     let cell = min(id.xy, vec2u(params.columns, params.rows) - 1u);
-    let size = vec2u(params.width, params.height);
-    var count = 0.0;
-    var g = vec3f();
-    var rest = 0.0;
-    var coverage = 0.0;
-    for (var j = 0u; j < min(params.cell, MAX_SIDE); j += params.step) {
-        for (var i = 0u; i < min(params.cell, MAX_SIDE); i += params.step) {
-            let pixel = cell * params.cell + vec2u(i, j);
-            let at = min(pixel, size - 1u);
-            let base = 2u * at.y * stride + at.x;
-            let place = vec2f(at) + vec2f(flow[base], flow[base + stride]);
-            let second = second_at(place);
-            let here = at.y * stride + at.x;
-            let m = model(Expansion(quad_0[here], cross_term_0[here]), second, vec2f());
-            let there = vec2u(select(vec2f(), place, second.inside));
-            let shown = certainty_0[here] * certainty_1[there.y * stride + there.x];
-            let share = select(0.0, shown, second.inside && all(pixel < size));
-            let sample = squared(share * m.a);
-            let b = share * m.delta_b;
-            let known = dot(abs(sample), vec3f(1.0)) + dot(b, b) <= 1e30;
-            count += select(0.0, 1.0, all(pixel < size));
-            g += select(vec3f(), sample, known);
-            rest += select(0.0, dot(b, b), known);
-            coverage += select(0.0, share, known);
-        }
-    }
-    let n = vec4f(1.0 / count);
-    let value = confidence_of(g.x * n, g.y * n, g.z * n, rest * n, coverage * n).x;
-    if id.x < out_stride && id.y < params.rows {
-        confidence[id.y * out_stride + id.x] = value;
+    let here = 5u * cell.y * stride + cell.x;
+    let g = vec3f(evidence[here], evidence[here + stride], evidence[here + 2u * stride]);
+    let rest = evidence[here + 3u * stride];
+    let coverage = evidence[here + 4u * stride];
+    let every = confidence_of(vec4f(g.x), vec4f(g.y), vec4f(g.z), vec4f(rest), vec4f(coverage)).x;
+    let v = motion[3];
+    let away = v.z * (params.origin + vec2f(cell) * params.pitch) - v.xy;
+    let expected = v.w < KNOWN_RAD && dot(away, away) > NEAR * NEAR;
+    let along = max(confidence_along(g, rest, coverage, away * params.focal), every);
+    if id.x < stride && id.y < params.rows {
+        let out = 2u * id.y * stride + id.x;
+        confidence[out] = select(every, along, expected);
+        confidence[out + stride] = every;
     }
 }

@@ -12,7 +12,7 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> plane: array<f32>;
 @group(0) @binding(2) var<storage, read> certainty: array<f32>;
-@group(0) @binding(3) var<storage, read_write> mean: array<f32>;
+@group(0) @binding(3) var<storage, read_write> mean: array<f32>; // two equal channels
 
 const SPAN = vec2u(1u, 1u);
 const MAX_SIDE = 64u;
@@ -36,6 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     if id.x < out_stride && id.y < params.rows {
-        mean[id.y * out_stride + id.x] = sum / count;
+        mean[2u * id.y * out_stride + id.x] = sum / count;
+        mean[(2u * id.y + 1u) * out_stride + id.x] = sum / count;
     }
 }

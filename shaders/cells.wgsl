@@ -15,8 +15,8 @@ struct Params {
 @group(0) @binding(1) var<storage, read> flow: array<f32>;      // from the current frame back to the previous one, pixels
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>;
 @group(0) @binding(3) var<storage, read> certainty: array<f32>; // of the current frame's pixels
-@group(0) @binding(4) var<storage, read> confidence: array<f32>;     // of the cells
-@group(0) @binding(5) var<storage, read_write> cells: array<f32>; // channels: confidence, x, y, dx/dt, dy/dt
+@group(0) @binding(4) var<storage, read> confidence: array<f32>; // of the cells: along the expected direction, in every direction
+@group(0) @binding(5) var<storage, read_write> cells: array<f32>; // channels: confidence along, x, y, dx/dt, dy/dt, confidence in every direction
 
 const SPAN = vec2u(1u, 1u);
 const MAX_SIDE = 64u;
@@ -54,12 +54,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let share = 1.0 / max(weight, 1e-6);
     if id.x < out_stride && id.y < params.rows {
-        let at = 5u * id.y * out_stride + id.x;
+        let at = 6u * id.y * out_stride + id.x;
         let known = weight > 1e-3;
-        cells[at] = select(0.0, confidence[cell.y * out_stride + cell.x], known);
+        cells[at] = select(0.0, confidence[2u * cell.y * out_stride + cell.x], known);
         cells[at + out_stride] = select(0.0, place.x * share, known);
         cells[at + 2u * out_stride] = select(0.0, place.y * share, known);
         cells[at + 3u * out_stride] = select(0.0, rate.x * share, known);
         cells[at + 4u * out_stride] = select(0.0, rate.y * share, known);
+        cells[at + 5u * out_stride] = select(0.0, confidence[(2u * cell.y + 1u) * out_stride + cell.x], known);
     }
 }

@@ -12,7 +12,7 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> cells: array<f32>; // channels: confidence, x, y, dx/dt, dy/dt
+@group(0) @binding(1) var<storage, read> cells: array<f32>; // channels: confidence along, x, y, dx/dt, dy/dt, confidence in every direction
 @group(0) @binding(2) var<storage, read> motion: array<vec4f>; // the last: direction of motion, its standard error
 @group(0) @binding(3) var<storage, read_write> looming: array<f32>; // channels: N, div, standard error of N, confidence
 
@@ -44,7 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             // Differences that wrap around are beyond the last column and row.
             let at = cell + vec2u(i, j) - params.radius;
             let there = at.x < params.columns && at.y < params.rows;
-            let base = select(0u, 5u * at.y * stride + at.x, there);
+            let base = select(0u, 6u * at.y * stride + at.x, there);
             let confidence = cells[base];
             let w = select(0.0, confidence, there && confidence >= params.least_confidence);
             let place = vec2f(cells[base + stride], cells[base + 2u * stride]);

@@ -5,11 +5,12 @@ struct Params {
     rows: u32,
     cell_columns: u32,
     least_confidence: f32,
+    least_both: f32,
     quantile: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> cells: array<f32>;   // channels: confidence, x, y, dx/dt, dy/dt
+@group(0) @binding(1) var<storage, read> cells: array<f32>;   // channels: confidence along, x, y, dx/dt, dy/dt, confidence in every direction
 @group(0) @binding(2) var<storage, read> looming: array<f32>; // channels: N, div, standard error of N, confidence
 @group(0) @binding(3) var<storage, read> ranges: array<vec2f>; // of members: first and count, sector by sector
 @group(0) @binding(4) var<storage, read> members: array<f32>; // cells, by their number
@@ -42,12 +43,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let f = (rate - sight * dot(sight, rate)) * sight.z;
         let normal = cross(sight, f);
         let share = select(0.0, w, known);
+        // The direction of motion follows only from flow that is known in every direction.
+        let every = cells[at.x + 5u * at.z];
+        let certain = known && every >= params.least_both;
+        let both = select(0.0, w * min(every / max(cells[at.x], 1e-6), 1.0), certain);
         valid += select(0u, 1u, known);
         confidence += share;
         error += share * looming[at.y + 2u * at.z];
         flow += share * f;
-        along += share * normal * normal;
-        across += share * normal.xxy * normal.yzz;
+        along += both * normal * normal;
+        across += both * normal.xxy * normal.yzz;
     }
     let low = f32(max(valid, 1u) - 1u);
     let ranks = vec3u(vec3f(floor(low * (1.0 - params.quantile) + 0.5), floor(low * 0.5 + 0.5),
@@ -124,7 +129,7 @@ fn place(cell: u32) -> vec3u {
     let stride = (params.cell_columns + 3u) / 4u * 4u;
     let row = cell / params.cell_columns;
     let column = cell - row * params.cell_columns;
-    return vec3u(5u * row * stride + column, 4u * row * stride + column, stride);
+    return vec3u(6u * row * stride + column, 4u * row * stride + column, stride);
 }
 
 // Bits whose order is that of the numbers.

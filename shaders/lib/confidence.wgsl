@@ -15,3 +15,13 @@ fn confidence_of(g_xx: vec4f, g_xy: vec4f, g_yy: vec4f, rest: vec4f, coverage: v
     let error = sqrt((rest + NOISE) / max(weakest, vec4f(SMALLEST)));
     return clamp(coverage, vec4f(), vec4f(1.0)) * HALF / (HALF + error);
 }
+
+// The confidence of a flow along a direction e, of any length but 0: from the error's variance there, eᵀG⁻¹e over e².
+fn confidence_along(g: vec3f, rest: f32, coverage: f32, e: vec2f) -> f32 {
+    let ridge = 1e-3 * (g.x + g.z) + SMALLEST;
+    let xx = g.x + ridge;
+    let yy = g.z + ridge;
+    let spread = (e.x * e.x * yy - 2.0 * e.x * e.y * g.y + e.y * e.y * xx) / (dot(e, e) * (xx * yy - g.y * g.y));
+    let error = sqrt((rest + NOISE) * spread);
+    return clamp(coverage, 0.0, 1.0) * HALF / (HALF + error);
+}

@@ -1,155 +1,111 @@
-//! The confidence of each cell's flow: [`confidence`](super::confidence) from samples, cell by cell.
+//! The confidence of each cell's flow, from its [`cell_evidence`](super::cell_evidence): along the direction that it is
+//! expected to have, and in every direction.
 //!
-//! A cell's samples take the place of a window's pixels. The equations are set up again at the samples only: with every
-//! fourth pixel of every fourth row that costs a sixteenth of the whole plane.
+//! The flow that translation causes points away from the direction of motion. A thin upright thing says little of its
+//! flow along itself (the aperture problem), but much of its flow across, and across is where an obstacle beside the
+//! path moves. With the mean G of AᵀA and the variance r of the residual, the error along a unit vector e has the
+//! variance `(r + 0.001) eᵀG⁻¹e`; its root is mapped as [`confidence`](super::confidence) maps the error in the worst
+//! direction, which is the second channel. The first is the larger of the two.
+//!
+//! Near the direction of motion, or where that is not known, no direction is expected, and both channels are the same.
 
-use super::confidence::confidence_of;
-use super::expansion_pair::{fours, squared};
+use super::bearings::rows;
+use super::confidence::{confidence_along, confidence_of};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
-use super::test_inputs::{Fill, cases as each_fill, planes, quads};
+use super::spherical_flow::motion_case;
+use super::test_inputs::{Fill, Random, cases as each_fill, planes};
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel, params};
 
 params! {
-    /// Shape of the cells and of the image.
+    /// Shape of the cells, and the ideal pinhole.
     struct Params {
         /// Cells in a row.
         columns: u32,
         /// Rows of cells.
         rows: u32,
-        /// Pixels in a row.
-        width: u32,
-        /// Rows of pixels.
-        height: u32,
-        /// Pixels of a cell's side, 1 to 64.
-        cell: u32,
-        /// Pixels from one sample to the next, at least 1.
-        step: u32,
+        /// Distance of neighbouring cells' centres in the pinhole's plane.
+        pitch: [f32; 2],
+        /// The first cell's centre in that plane.
+        origin: [f32; 2],
+        /// Pixels of a focal length, to the right and down.
+        focal: [f32; 2],
     }
 }
 
 kernel!(
-    "cell_confidence" + ["equations", "second", "confidence"],
-    reference(
-        Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty_0, certainty_1, flow
-    ) -> (confidence),
+    "cell_confidence" + ["confidence"],
+    reference(Params; evidence, motion) -> (confidence),
     cases: cases,
     tolerance: Tolerance {
         absolute: 1e-4,
         relative: 0.0, of_largest: 0.0,
-        reason: "as in confidence: the least eigenvalue is a difference, and keeps four digits where the eigenvalues are \
-                 in a ratio of some hundred, and the share of 1 is taken of its root",
+        reason: "as in confidence: the least eigenvalue, and the determinant, are differences, and keep four digits where \
+                 the eigenvalues are in a ratio of some hundred, and the share of 1 is taken of their root",
     },
 );
 
-/// The second frame between the four pixels around a place.
-struct Second<'a> {
-    quad: &'a [[f32; 4]],
-    cross_term: &'a [f32],
-    width: usize,
-    height: usize,
-    stride: usize,
-}
+/// Channels of the result: along the expected direction, and in every direction.
+pub const CHANNELS: usize = 2;
+/// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
+const KNOWN_RAD: f32 = 0.3;
+/// The least distance from the direction of motion at which it has one, in the pinhole's plane.
+const NEAR: f32 = 0.05;
 
-impl Second<'_> {
-    /// b_x, b_y, A_xx, A_yy, 2 A_xy there, and the pixel above and to the left; none outside.
-    #[inline(always)]
-    fn at(&self, x: f32, y: f32) -> Option<([f32; 5], usize)> {
-        let (right, bottom) = ((self.width - 1) as f32, (self.height - 1) as f32);
-        if !(x >= 0.0 && y >= 0.0 && x < right && y < bottom) {
-            return None;
-        }
-        let (left, above) = (x as usize, y as usize);
-        let (fx, fy) = (x - left as f32, y - above as f32);
-        let first = above * self.stride + left;
-        let mut sum = [0.0; 5];
-        for (at, w) in [
-            (first, (1.0 - fx) * (1.0 - fy)),
-            (first + 1, fx * (1.0 - fy)),
-            (first + self.stride, (1.0 - fx) * fy),
-            (first + self.stride + 1, fx * fy),
-        ] {
-            for (sum, value) in sum.iter_mut().zip(self.quad[at]) {
-                *sum += w * value;
-            }
-            sum[4] += w * self.cross_term[at];
-        }
-        Some((sum, first))
-    }
-}
-
-#[allow(clippy::too_many_arguments, reason = "they are the kernel's buffers")]
-fn reference(
-    p: &Params,
-    quad_0: &[f32],
-    cross_term_0: &[f32],
-    quad_1: &[f32],
-    cross_term_1: &[f32],
-    certainty_0: &[f32],
-    certainty_1: &[f32],
-    flow: &[f32],
-    confidence: &mut [f32],
-) {
-    let (width, height, stride) = dimensions(p.width, p.height);
-    let (columns, _, out_stride) = dimensions(p.columns, p.rows);
-    let quad_0 = fours(quad_0);
-    let second = Second { quad: fours(quad_1), cross_term: cross_term_1, width, height, stride };
-    let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(confidence, &mut [], Split { dearer: 32, ..Split::rows_of(out_stride) }, #[inline(always)] |band| {
-        for (i, out) in band.out.chunks_exact_mut(out_stride).enumerate() {
+fn reference(p: &Params, evidence: &[f32], motion: &[f32], confidence: &mut [f32]) {
+    let (columns, _, stride) = dimensions(p.columns, p.rows);
+    let [v_x, v_y, v_z, v_error] = rows(motion)[3];
+    bands(confidence, &mut [], Split::rows_of(CHANNELS * stride), #[inline(always)] |band| {
+        for (i, out) in band.out.chunks_exact_mut(CHANNELS * stride).enumerate() {
             let row = band.y0 + i;
-            for (column, out) in out[..columns].iter_mut().enumerate() {
-                let mut count = 0.0;
-                let mut evidence = [0.0f32; 5];
-                for y in (row * cell..(row + 1) * cell).step_by(step).filter(|y| *y < height) {
-                    for x in (column * cell..(column + 1) * cell).step_by(step).filter(|x| *x < width) {
-                        count += 1.0;
-                        let at = y * stride + x;
-                        let (u, v) = (flow[2 * y * stride + x], flow[(2 * y + 1) * stride + x]);
-                        let Some((other, there)) = second.at(x as f32 + u, y as f32 + v) else { continue };
-                        let share = certainty_0[at] * certainty_1[there];
-                        let q = quad_0[at];
-                        let [b_x, b_y] = [0, 1].map(|k| share * 0.5 * (q[k] - other[k]));
-                        let [a_xx, a_yy] = [2, 3].map(|k| share * 0.5 * (q[k] + other[k]));
-                        let a_xy = share * 0.25 * (cross_term_0[at] + other[4]);
-                        let [g_xx, g_xy, g_yy] = squared(a_xx, a_xy, a_yy);
-                        let rest = b_x * b_x + b_y * b_y;
-                        if g_xx.abs() + g_xy.abs() + g_yy.abs() + rest <= 1e30 {
-                            for (sum, value) in evidence.iter_mut().zip([g_xx, g_xy, g_yy, rest, share]) {
-                                *sum += value;
-                            }
-                        }
-                    }
-                }
-                *out = confidence_of(evidence.map(|sum| sum * (1.0 / count)));
+            for column in 0..columns {
+                let mean: [f32; 5] = std::array::from_fn(|k| evidence[(5 * row + k) * stride + column]);
+                let every = confidence_of(mean);
+                let plane = [
+                    p.origin[0] + column as f32 * p.pitch[0],
+                    p.origin[1] + row as f32 * p.pitch[1],
+                ];
+                let away = [v_z * plane[0] - v_x, v_z * plane[1] - v_y];
+                let expected = v_error < KNOWN_RAD && away[0] * away[0] + away[1] * away[1] > NEAR * NEAR;
+                let e = [away[0] * p.focal[0], away[1] * p.focal[1]];
+                let along = if expected { confidence_along(mean, e).max(every) } else { every };
+                (out[column], out[stride + column]) = (along, every);
             }
-            repeat_last(out, columns);
+            out.chunks_exact_mut(stride).for_each(|row| repeat_last(row, columns));
         }
     });
 }
 
 fn cases(size: Size) -> Vec<Case> {
-    let side = 8;
-    let extent = Size::new(size.width.div_ceil(side), size.height.div_ceil(side));
+    let extent = Size::new(size.width.div_ceil(4), size.height.div_ceil(4));
     let params = Params {
         columns: extent.width,
         rows: extent.height,
-        width: size.width,
-        height: size.height,
-        cell: side,
-        step: 2,
+        pitch: [0.02, 0.03],
+        origin: [-0.2, -0.3],
+        focal: [200.0, 210.0],
     };
-    let ranges = [[-2.0, 2.0], [-2.0, 2.0], [-4.0, 4.0], [-4.0, 4.0]];
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[extent.stride()], extent, |fill| {
-        let flow = if fill == Fill::Extreme { [0.0, 1e12] } else { [-6.0, 6.0] };
-        vec![
-            quads(size, fill, ranges, 1),
-            planes(size, 1, fill, [-4.0, 4.0], 2),
-            quads(size, fill, ranges, 3),
-            planes(size, 1, fill, [-4.0, 4.0], 4),
-            planes(size, 1, Fill::Textured, [0.0, 1.0], 5),
-            planes(size, 1, Fill::Textured, [0.5, 1.0], 6),
-            planes(size, 2, fill, flow, 7),
-        ]
+    each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
+        let mut evidence = planes(extent, 5, fill, [0.0, 1.0], 3);
+        let mut random = Random::new(4);
+        let stride = extent.stride();
+        for rows in evidence.chunks_exact_mut(5 * stride) {
+            for column in 0..stride {
+                // A matrix AᵀA, of eigenvalues in a ratio of up to a hundred.
+                let from = column.min(extent.width as usize - 1);
+                let [large, ratio, angle] = [0, 1, 2].map(|_| random.next());
+                let (sin, cos) = (3.0 * angle).sin_cos();
+                let (first, second) = (4.0 * large + 0.1, (4.0 * large + 0.1) * (0.01 + 0.9 * ratio));
+                let g = [
+                    first * cos * cos + second * sin * sin,
+                    (first - second) * sin * cos,
+                    first * sin * sin + second * cos * cos,
+                ];
+                for (k, value) in g.into_iter().enumerate() {
+                    rows[k * stride + column] = if from == column { value } else { rows[k * stride + from] };
+                }
+            }
+        }
+        vec![evidence, motion_case()]
     })
 }

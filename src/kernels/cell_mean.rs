@@ -1,9 +1,11 @@
 //! The mean of a plane over each cell's samples, weighted by their certainty: the confidence of a cell's flow from that
 //! of its pixels.
+//!
+//! Two equal channels, as [`cell_confidence`](super::cell_confidence) has: along every direction alike.
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
-pub use super::cell_confidence::Params;
+pub use super::cell_evidence::Params;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel};
 
@@ -23,10 +25,10 @@ fn reference(p: &Params, plane: &[f32], certainty: &[f32], mean: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let (columns, _, out_stride) = dimensions(p.columns, p.rows);
     let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(mean, &mut [], Split { dearer: 8, ..Split::rows_of(out_stride) }, #[inline(always)] |band| {
-        for (i, out) in band.out.chunks_exact_mut(out_stride).enumerate() {
+    bands(mean, &mut [], Split { dearer: 8, ..Split::rows_of(2 * out_stride) }, #[inline(always)] |band| {
+        for (i, out) in band.out.chunks_exact_mut(2 * out_stride).enumerate() {
             let row = band.y0 + i;
-            for (column, out) in out[..columns].iter_mut().enumerate() {
+            for column in 0..columns {
                 let (mut count, mut sum) = (0.0, 0.0);
                 for y in (row * cell..(row + 1) * cell).step_by(step).filter(|y| *y < height) {
                     for x in (column * cell..(column + 1) * cell).step_by(step).filter(|x| *x < width) {
@@ -34,9 +36,9 @@ fn reference(p: &Params, plane: &[f32], certainty: &[f32], mean: &mut [f32]) {
                         sum += plane[y * stride + x] * certainty[y * stride + x];
                     }
                 }
-                *out = sum / count;
+                (out[column], out[out_stride + column]) = (sum / count, sum / count);
             }
-            repeat_last(out, columns);
+            out.chunks_exact_mut(out_stride).for_each(|row| repeat_last(row, columns));
         }
     });
 }
@@ -52,7 +54,7 @@ fn cases(size: Size) -> Vec<Case> {
         cell: side,
         step: 2,
     };
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[extent.stride()], extent, |fill| {
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[2 * extent.stride()], extent, |fill| {
         vec![planes(size, 1, fill, [0.0, 1.0], 1), planes(size, 1, Fill::Textured, [0.0, 1.0], 2)]
     })
 }

@@ -3,6 +3,9 @@
 //! The errors of neighbouring pixels' flow are correlated over about a window's width: cells of that order keep all
 //! information. A cell's place and rate are means over its samples, in the plane of the ideal pinhole at unit distance:
 //! of `m / m_z` for the midpoint bearing m, and of `(F − m F_z / m_z) / m_z` for the spherical flow F.
+//!
+//! Channels: 0 the confidence along the expected direction, 1 and 2 the place, 3 and 4 the rate, 5 the confidence in
+//! every direction.
 
 use super::bearings::{Pinhole, rows};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
@@ -45,6 +48,9 @@ kernel!(
     },
 );
 
+/// Channels of the result.
+pub const CHANNELS: usize = 6;
+
 fn reference(
     p: &Params,
     flow: &[f32],
@@ -58,8 +64,8 @@ fn reference(
     let motion = rows(motion);
     let pinhole = Pinhole { focal: p.focal, centre: p.centre };
     let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(cells, &mut [], Split { dearer: 8, ..Split::rows_of(5 * out_stride) }, #[inline(always)] |band| {
-        for (i, rows) in band.out.chunks_exact_mut(5 * out_stride).enumerate() {
+    bands(cells, &mut [], Split { dearer: 8, ..Split::rows_of(CHANNELS * out_stride) }, #[inline(always)] |band| {
+        for (i, rows) in band.out.chunks_exact_mut(CHANNELS * out_stride).enumerate() {
             let row = band.y0 + i;
             for column in 0..columns {
                 let mut sums = [0.0f32; 5];
@@ -82,7 +88,10 @@ fn reference(
                 }
                 let known = sums[0] > 1e-3;
                 let share = 1.0 / sums[0].max(1e-6);
-                rows[column] = if known { confidence[row * out_stride + column] } else { 0.0 };
+                for (channel, of) in [(0, 0), (5, 1)] {
+                    let confidence = confidence[(2 * row + of) * out_stride + column];
+                    rows[channel * out_stride + column] = if known { confidence } else { 0.0 };
+                }
                 for k in 1..5 {
                     rows[k * out_stride + column] = if known { sums[k] * share } else { 0.0 };
                 }
@@ -106,7 +115,7 @@ fn cases(size: Size) -> Vec<Case> {
         focal: [0.134 * width + 1.0, 0.15 * height + 1.0],
         centre: [0.52 * width, 0.47 * height],
     };
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[5 * extent.stride()], extent, |fill| {
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
         let range = if fill == Fill::Extreme { [0.0, 1e12] } else { [-0.04 * width, 0.04 * width] };
         let mut certainty = planes(size, 1, fill, [0.1, 1.0], 4);
         // A corner without certainty, as a mask makes it.
@@ -119,7 +128,7 @@ fn cases(size: Size) -> Vec<Case> {
             planes(size, 2, fill, range, 3),
             motion_case(),
             certainty,
-            planes(extent, 1, Fill::Textured, [0.0, 1.0], 5),
+            planes(extent, 2, Fill::Textured, [0.0, 1.0], 5),
         ]
     })
 }

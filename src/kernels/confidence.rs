@@ -50,6 +50,18 @@ pub(super) fn confidence_of([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5]) -> f32
     coverage.clamp(0.0, 1.0) * HALF / (HALF + error)
 }
 
+/// The confidence of that evidence along a direction e, of any length but 0.
+#[inline(always)]
+pub(super) fn confidence_along([g_xx, g_xy, g_yy, rest, coverage]: [f32; 5], e: [f32; 2]) -> f32 {
+    // Keeps the inverse bounded where the texture has one direction, or none.
+    let ridge = 1e-3 * (g_xx + g_yy) + SMALLEST;
+    let (xx, yy) = (g_xx + ridge, g_yy + ridge);
+    let spread = (e[0] * e[0] * yy - 2.0 * e[0] * e[1] * g_xy + e[1] * e[1] * xx)
+        / ((e[0] * e[0] + e[1] * e[1]) * (xx * yy - g_xy * g_xy));
+    let error = ((rest + NOISE) * spread).sqrt();
+    coverage.clamp(0.0, 1.0) * HALF / (HALF + error)
+}
+
 /// The equations of `solve`, whose right-hand sides stand in, made positive, for residual and coverage.
 fn cases(size: Size) -> Vec<Case> {
     let params = Params { width: size.width, height: size.height, radius: 6 };

@@ -12,6 +12,7 @@
 //! matters.
 
 use super::bearings::rows;
+use super::cells::CHANNELS as CELL_CHANNELS;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::spherical_flow::motion_case;
 use super::test_inputs::{Fill, Random, cases as each_fill, planes};
@@ -113,7 +114,7 @@ fn reference(p: &Params, cells: &[f32], motion: &[f32], looming: &mut [f32]) {
                 let (mut all, mut near) = (Sums::default(), Sums::default());
                 for y in (row - radius).max(0)..(row + radius + 1).min(height as isize) {
                     for x in (column - radius).max(0)..(column + radius + 1).min(columns as isize) {
-                        let at = 5 * y as usize * stride + x as usize;
+                        let at = CELL_CHANNELS * y as usize * stride + x as usize;
                         let confidence = cells[at];
                         if !(confidence >= p.least_confidence) {
                             continue;
@@ -188,8 +189,8 @@ fn fit(p: &Params, all: &Sums, near: &Sums, origin: Pair, v_error: f32, cells: f
 pub(super) fn cells_case(size: Size, fill: Fill, seed: u32) -> Vec<f32> {
     let stride = size.stride();
     let mut random = Random::new(seed);
-    let mut values = planes(size, 5, Fill::Flat, [0.0, 0.0], seed);
-    for (y, rows) in values.chunks_exact_mut(5 * stride).enumerate() {
+    let mut values = planes(size, CELL_CHANNELS, Fill::Flat, [0.0, 0.0], seed);
+    for (y, rows) in values.chunks_exact_mut(CELL_CHANNELS * stride).enumerate() {
         for x in 0..stride {
             let place = [x, y].map(|i| 0.02 * (i as f32 - 12.0) + 0.004 * random.next());
             let depth = 0.05 * if fill == Fill::Flat { 1.0 } else { 0.5 + random.next() };
@@ -199,10 +200,13 @@ pub(super) fn cells_case(size: Size, fill: Fill, seed: u32) -> Vec<f32> {
                 _ if random.next() < 0.3 => 0.01,
                 _ => 0.2 + 0.8 * random.next(),
             };
+            let every = if fill == Fill::Flat { 1.0 } else { [1.0, 0.05, 0.8][(3.0 * random.next()) as usize % 3] };
             let of_x = x.min(size.width as usize - 1);
             let from = if of_x == x { None } else { Some(of_x) };
             for (channel, value) in
-                [confidence, place[0], place[1], depth * place[0], depth * place[1]].into_iter().enumerate()
+                [confidence, place[0], place[1], depth * place[0], depth * place[1], confidence * every]
+                    .into_iter()
+                    .enumerate()
             {
                 rows[channel * stride + x] = match from {
                     None => value,

@@ -86,6 +86,7 @@ registry!(
     rotational_flow,
     spherical_flow,
     cell_confidence,
+    cell_evidence,
     cell_mean,
     cells,
     looming,

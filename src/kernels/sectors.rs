@@ -11,6 +11,7 @@
 //! same bits whatever the order of the cells.
 
 use super::bearings::dot;
+use super::cells::CHANNELS as CELL_CHANNELS;
 use super::looming::cells_case;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -28,6 +29,8 @@ params! {
         cell_columns: u32,
         /// Cells of less confidence are left out.
         least_confidence: f32,
+        /// Cells of less confidence in every direction are left out of the moments.
+        least_both: f32,
         /// The upper quantile's rank, above 0.5 and below 1; the lower one's is 1 less it.
         quantile: f32,
     }
@@ -71,7 +74,7 @@ fn reference(
                 for member in &members[first..first + count] {
                     let cell = *member as usize;
                     let (y, x) = (cell / cell_columns, cell % cell_columns);
-                    let of_cells = |channel: usize| cells[(5 * y + channel) * cell_stride + x];
+                    let of_cells = |channel: usize| cells[(CELL_CHANNELS * y + channel) * cell_stride + x];
                     let of_looming = |channel: usize| looming[(4 * y + channel) * cell_stride + x];
                     let w = of_looming(3);
                     if !(w >= p.least_confidence) {
@@ -91,8 +94,10 @@ fn reference(
                         n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2],
                         of_looming(2),
                     ];
-                    for (sum, term) in sums.iter_mut().zip(terms) {
-                        *sum += w * term;
+                    let (along, every) = (of_cells(0), of_cells(5));
+                    let both = if every >= p.least_both { w * (every / along.max(1e-6)).min(1.0) } else { 0.0 };
+                    for (k, (sum, term)) in sums.iter_mut().zip(terms).enumerate() {
+                        *sum += if (4..10).contains(&k) { both } else { w } * term;
                     }
                 }
                 let mut set = |channel: usize, value: f32| out[channel * stride + column] = value;
@@ -144,6 +149,7 @@ fn cases(size: Size) -> Vec<Case> {
         rows: extent.height,
         cell_columns: cells.width,
         least_confidence: 0.1,
+        least_both: 0.15,
         quantile: 0.8,
     };
     let fills = [Fill::Flat, Fill::Textured];

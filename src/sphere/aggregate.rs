@@ -6,7 +6,7 @@ use super::plan::ExtraOutputs;
 use crate::camera::Camera;
 use crate::flow::Evidence;
 use crate::frame::Size;
-use crate::kernels::{cell_confidence, cell_mean, cells, looming, sectors, spherical_flow};
+use crate::kernels::{cell_confidence, cell_evidence, cell_mean, cells, looming, sectors, spherical_flow};
 use crate::plan::{BufId, Bufs, Port, PortKind, Shape, Step};
 
 /// Builds the steps from the flow to the sectors.
@@ -14,7 +14,8 @@ pub(super) struct Aggregation<'a> {
     ideal: &'a Camera,
     view: &'a Sphere,
     cells_at: &'a Cells,
-    confidence: BufId,
+    evidence: (BufId, Shape),
+    confidence: (BufId, Shape),
     cells: (BufId, Shape),
     looming: (BufId, Shape),
     sectors: (BufId, Shape),
@@ -35,8 +36,9 @@ impl<'a> Aggregation<'a> {
     ) -> Self {
         let columns_rows = Size::new(grid.columns as u32, grid.rows as u32);
         let mut computed = |name: &str, shape: Shape| (bufs.computed(name, shape), shape);
-        let (confidence, _) = computed("confidence", Shape::planar(cells.size, 1));
-        let of_cells = computed("cells", Shape::planar(cells.size, 5));
+        let evidence = computed("evidence", Shape::planar(cells.size, cell_evidence::CHANNELS));
+        let confidence = computed("confidence", Shape::planar(cells.size, cell_confidence::CHANNELS));
+        let of_cells = computed("cells", Shape::planar(cells.size, cells::CHANNELS));
         let looming = computed("looming", Shape::planar(cells.size, 4));
         let sectors = computed("sectors", Shape::planar(columns_rows, sectors::CHANNELS));
         let spherical_flow =
@@ -46,6 +48,7 @@ impl<'a> Aggregation<'a> {
             ideal,
             view,
             cells_at: cells,
+            evidence,
             confidence,
             cells: of_cells,
             looming,
@@ -90,29 +93,32 @@ impl<'a> Aggregation<'a> {
                 &[spherical_flow],
             ));
         }
-        let confidence = [(self.confidence, Shape::planar(self.cells_at.size, 1))];
-        steps.push(match evidence {
-            Evidence::Expansions([quad_0, cross_0, quad_1, cross_1]) => Step::new(
-                &cell_confidence::KERNEL,
-                "sphere",
-                cell_confidence::Params { columns, rows, width, height, cell, step },
-                &[quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow],
-                &confidence,
-            ),
-            Evidence::Confidence(plane) => Step::new(
-                &cell_mean::KERNEL,
-                "sphere",
-                cell_mean::Params { columns, rows, width, height, cell, step },
-                &[plane, certainty[0]],
-                &confidence,
-            ),
-        });
+        let samples = cell_evidence::Params { columns, rows, width, height, cell, step };
+        match evidence {
+            Evidence::Expansions([quad_0, cross_0, quad_1, cross_1]) => {
+                let inputs = [quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow];
+                steps.push(Step::new(&cell_evidence::KERNEL, "sphere", samples, &inputs, &[self.evidence]));
+                let params = confidence_params(self.ideal, self.cells_at);
+                let inputs = [self.evidence.0, motion];
+                steps.push(Step::new(
+                    &cell_confidence::KERNEL,
+                    "sphere",
+                    params,
+                    &inputs,
+                    &[self.confidence],
+                ));
+            }
+            Evidence::Confidence(plane) => {
+                let inputs = [plane, certainty[0]];
+                steps.push(Step::new(&cell_mean::KERNEL, "sphere", samples, &inputs, &[self.confidence]));
+            }
+        }
         let spherical_flow::Params { focal, centre, .. } = pinhole(self.ideal);
         steps.push(Step::new(
             &cells::KERNEL,
             "sphere",
             cells::Params { columns, rows, width, height, cell, step, focal, centre },
-            &[flow, turn, certainty[0], self.confidence],
+            &[flow, turn, certainty[0], self.confidence.0],
             &[self.cells],
         ));
         steps.push(Step::new(
@@ -147,6 +153,18 @@ pub(super) fn looming_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> lo
     }
 }
 
+/// The parameters of the kernel that judges the cells' evidence.
+fn confidence_params(ideal: &Camera, cells: &Cells) -> cell_confidence::Params {
+    let [origin, pitch] = cells.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
+    cell_confidence::Params {
+        columns: cells.size.width,
+        rows: cells.size.height,
+        pitch,
+        origin,
+        focal: [ideal.f_u as f32, ideal.f_v as f32],
+    }
+}
+
 /// The parameters of the kernel that summarizes cells in sectors.
 pub(super) fn sectors_params(view: &Sphere, cells: &Cells) -> sectors::Params {
     sectors::Params {
@@ -155,6 +173,7 @@ pub(super) fn sectors_params(view: &Sphere, cells: &Cells) -> sectors::Params {
         cell_columns: cells.size.width,
         // A window's confidence is relative to all its cells: with half of them trusted it still counts.
         least_confidence: 0.5 * view.least_confidence as f32,
+        least_both: view.least_confidence as f32,
         quantile: view.quantile as f32,
     }
 }

@@ -7,7 +7,7 @@ use super::{Cells, Grid, Heading, Motion, Sectors, Sphere, model};
 use crate::camera::{Camera, Lens};
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::kernels::{looming, sectors};
+use crate::kernels::{self, looming, sectors};
 
 /// Aggregates flow on the view sphere into sectors, on the CPU: true flow, or the flow of another estimator.
 ///
@@ -57,7 +57,7 @@ impl SectorAggregator {
             sectors_params: sectors_params(view, &cells),
             ranges,
             members,
-            of_cells: values(5),
+            of_cells: values(kernels::cells::CHANNELS),
             looming: values(4),
             summed: vec![0.0; sectors::CHANNELS * stride * grid.rows],
             sectors: Sectors::unknown(grid),
@@ -91,9 +91,11 @@ impl SectorAggregator {
                 continue;
             };
             let [rate_x, rate_y] = model::to_plane(bearing, flow_rad);
-            let values = [confidence, bearing.x / bearing.z, bearing.y / bearing.z, rate_x, rate_y];
+            let values =
+                [confidence, bearing.x / bearing.z, bearing.y / bearing.z, rate_x, rate_y, confidence];
             for (channel, value) in values.into_iter().enumerate() {
-                self.of_cells[(5 * (i / columns) + channel) * stride + i % columns] = value as f32;
+                self.of_cells[(kernels::cells::CHANNELS * (i / columns) + channel) * stride + i % columns] =
+                    value as f32;
             }
         }
         let motion = Motion { prev_from_cur: DMat3::IDENTITY, heading: *heading }.values();

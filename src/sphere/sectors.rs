@@ -29,6 +29,11 @@ impl Sector {
     pub fn is_known(&self) -> bool {
         self.coverage > 0.0
     }
+
+    /// Whether any cell of it, and at least this share of them, is trusted.
+    pub(crate) fn counts(&self, least_coverage: f64) -> bool {
+        self.is_known() && self.coverage >= least_coverage
+    }
 }
 
 /// The sectors of a pair of frames.

@@ -38,6 +38,18 @@ pub enum Danger {
     Blend,
 }
 
+/// What obstacles are read from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Reading {
+    /// Each sector of the danger map by itself.
+    Sectors,
+    /// Each column of the danger map as a whole: narrow things stand upright and fill it, wide ones reach from their
+    /// top to their foot.
+    #[default]
+    Columns,
+}
+
 /// The configuration of steering: its parameters, and the aircraft. Angles are in radians, times in seconds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteerConfig {
@@ -55,6 +67,13 @@ pub struct SteerParams {
     pub policy: Policy,
     /// The measure of danger.
     pub danger: Danger,
+    /// What obstacles are read from.
+    pub reading: Reading,
+    /// The widest thing that [`Reading::Columns`] takes for an upright post, in metres, 0 or more.
+    pub post_m: f64,
+    /// What an obstacle's distance, the airspeed over the nearness rate, is multiplied by, above 0 and at most 2. Below
+    /// 1, as the flow of a thin thing is mixed with that of what is behind it, and shows it too far away.
+    pub distance_scale: f64,
     /// The steepest bank that is commanded, above 0 and below π/2.
     pub max_bank_rad: f64,
     /// The steepest commanded climb and descent angle, 0 to π/4.
@@ -121,18 +140,21 @@ impl Default for SteerParams {
         Self {
             policy: Policy::default(),
             danger: Danger::default(),
+            reading: Reading::default(),
+            post_m: 1.5,
+            distance_scale: 0.9,
             max_bank_rad: 60_f64.to_radians(),
             max_climb_rad: 8_f64.to_radians(),
             horizon_s: 2.6,
             radius_m: 1.2,
             softness_m: 0.35,
-            discount_s: 2.5,
+            discount_s: 1.2,
             weights: Weights { danger: 8.0, goal: 1.0, change: 0.25, bank: 0.05, climb: 12.0 },
-            least_rate_hz: 0.25,
+            least_rate_hz: 0.5,
             least_coverage: 0.3,
             smoothing: 0.6,
             memory_s: 1.2,
-            half_width_rad: 1.5_f64.to_radians(),
+            half_width_rad: 0.7_f64.to_radians(),
             map_half_rad: [58_f64.to_radians(), 28_f64.to_radians()],
             map_pitch_rad: [4_f64.to_radians(), 8_f64.to_radians()],
             climb_per_m: 0.03,
@@ -169,6 +191,8 @@ impl SteerParams {
         let Weights { danger, goal, change, bank, climb } = self.weights;
         let OnInvalid { hold_s, climb_rad } = self.on_invalid;
         in_ranges(&[
+            ("post_m", self.post_m, 0.0, 1e3),
+            ("distance_scale", self.distance_scale, 0.01, 2.0),
             ("max_bank_rad", self.max_bank_rad, 1e-3, 1.5),
             ("max_climb_rad", self.max_climb_rad, 0.0, quarter),
             ("horizon_s", self.horizon_s, 0.1, 10.0),

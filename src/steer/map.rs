@@ -58,7 +58,7 @@ impl DangerMap {
                     let bearing = *camera_from_level * crate::sphere::bearing(angles);
                     let Some([column, row]) = sectors.grid.sector(bearing) else { continue };
                     let sector = sectors.get(column, row);
-                    if !(sector.coverage >= params.least_coverage && sector.is_known()) {
+                    if !sector.counts(params.least_coverage) {
                         continue;
                     }
                     known += 1;

@@ -11,6 +11,7 @@
 
 mod aircraft;
 mod arc;
+mod columns;
 mod command;
 mod config;
 mod map;
@@ -23,7 +24,7 @@ mod steering;
 pub use aircraft::{Aircraft, Response};
 pub use arc::Arc;
 pub use command::Command;
-pub use config::{Danger, OnInvalid, Policy, SteerConfig, SteerParams, Weights};
+pub use config::{Danger, OnInvalid, Policy, Reading, SteerConfig, SteerParams, Weights};
 pub use map::DangerMap;
 pub use observation::{Goal, Observation, View};
 pub use obstacles::Obstacle;

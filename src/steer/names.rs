@@ -1,6 +1,6 @@
-//! The names of policies and measures of danger.
+//! The names of policies, measures of danger and readings.
 
-use super::{Danger, Policy};
+use super::{Danger, Policy, Reading};
 use crate::named::named;
 
 impl Policy {
@@ -33,8 +33,22 @@ impl Danger {
     }
 }
 
+impl Reading {
+    /// All readings.
+    pub const ALL: [Self; 2] = [Self::Sectors, Self::Columns];
+
+    /// The name: `sectors` or `columns`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sectors => "sectors",
+            Self::Columns => "columns",
+        }
+    }
+}
+
 named!(Policy, "policy");
 named!(Danger, "danger");
+named!(Reading, "reading");
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -48,6 +62,9 @@ mod tests {
         }
         for danger in Danger::ALL {
             assert_eq!(danger.to_string().parse::<Danger>().unwrap(), danger);
+        }
+        for reading in Reading::ALL {
+            assert_eq!(reading.to_string().parse::<Reading>().unwrap(), reading);
         }
         let error = "Arc".parse::<Policy>().unwrap_err().to_string();
         assert_eq!(error, "policy is \"Arc\", expected none, balance, potential, heading, arc");

@@ -4,8 +4,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DVec3};
 
-use super::{DangerMap, SteerParams};
-use crate::sphere::Grid;
+use super::columns::Columns;
+use super::{DangerMap, Reading, SteerParams};
+use crate::sphere::Sectors;
+
+/// No obstacle is nearer than this, metres.
+const NEAREST_M: f64 = 0.3;
 
 /// An obstacle: a ball to pass at a clearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +28,7 @@ pub(super) struct Obstacles {
     in_view: usize,
     /// When each remembered obstacle was last seen.
     seen_s: Vec<f64>,
+    columns: Columns,
 }
 
 impl Obstacles {
@@ -40,7 +45,7 @@ impl Obstacles {
         self.all.iter_mut().for_each(|obstacle| obstacle.place_ned_m -= by_ned_m);
     }
 
-    /// Adds the obstacles of a frame. Earlier ones outside the frame's view are remembered.
+    /// Adds the obstacles of a frame. Earlier ones are remembered where it shows nothing.
     pub(super) fn see(
         &mut self,
         params: &SteerParams,
@@ -51,16 +56,24 @@ impl Obstacles {
         let mut remembered = Vec::new();
         for (i, obstacle) in self.all.iter().enumerate() {
             let seen_s = if i < self.in_view { before_s } else { self.seen_s[i - self.in_view] };
-            if now_s - seen_s <= params.memory_s && !frame.shows(obstacle) {
+            if now_s - seen_s <= params.memory_s && !frame.shows(params, obstacle) {
                 remembered.push((*obstacle, seen_s));
             }
         }
         self.all.clear();
-        for (at, rate) in map.rates_hz.iter().enumerate() {
-            if !(*rate >= params.least_rate_hz && map.known[at] > 0.0) {
+        let rates_hz = match params.reading {
+            Reading::Sectors => &map.rates_hz,
+            Reading::Columns => self.columns.read(params, map, frame.speed_m_s),
+        };
+        // The rates are those at the middle of the interval.
+        let since_m = 0.5 * frame.speed_m_s * frame.sectors.interval_s;
+        for (at, rate) in rates_hz.iter().enumerate() {
+            // A column fills its sectors that are not known.
+            let counts = params.reading == Reading::Columns || map.known[at] > 0.0;
+            if !(counts && *rate >= params.least_rate_hz) {
                 continue;
             }
-            let distance_m = frame.speed_m_s / rate;
+            let distance_m = (params.distance_scale * frame.speed_m_s / rate - since_m).max(NEAREST_M);
             let bearing = map.grid.bearing(at % map.grid.columns, at / map.grid.columns);
             self.all.push(Obstacle {
                 place_ned_m: *frame.ned_from_level * bearing * distance_m,
@@ -79,15 +92,18 @@ pub(super) struct ViewGeometry<'a> {
     pub(super) ned_from_level: &'a DMat3,
     pub(super) camera_from_ned: &'a DMat3,
     /// The sectors of the view, in the camera's frame.
-    pub(super) grid: &'a Grid,
+    pub(super) sectors: &'a Sectors,
     pub(super) speed_m_s: f64,
 }
 
 impl ViewGeometry<'_> {
-    /// Whether an obstacle is within the view, or so far behind that it no longer matters.
-    fn shows(&self, obstacle: &Obstacle) -> bool {
+    /// Whether the view shows what is at an obstacle's place, or that is so far behind that it no longer matters. A
+    /// sector without trusted flow shows nothing: the obstacle may still be there.
+    fn shows(&self, params: &SteerParams, obstacle: &Obstacle) -> bool {
         let place = obstacle.place_ned_m;
         let ahead = *self.ned_from_level * DVec3::Z;
-        ahead.angle_between(place) > FRAC_PI_2 || self.grid.sector(*self.camera_from_ned * place).is_some()
+        let sector = self.sectors.grid.sector(*self.camera_from_ned * place);
+        ahead.angle_between(place) > FRAC_PI_2
+            || sector.is_some_and(|[column, row]| self.sectors.get(column, row).counts(params.least_coverage))
     }
 }

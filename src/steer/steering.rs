@@ -144,7 +144,7 @@ impl Steering {
         let frame = ViewGeometry {
             ned_from_level: &ned_from_level,
             camera_from_ned: &camera_from_ned,
-            grid: &view.sectors.grid,
+            sectors: view.sectors,
             speed_m_s: o.airspeed_m_s,
         };
         self.obstacles.see(&self.config.params, &self.map, frame, [before_s, o.time_s]);

@@ -148,6 +148,32 @@ fn what_has_left_the_view_is_remembered_for_a_while() {
     assert!(steering.obstacles().is_empty());
 }
 
+/// A sector whose flow is not trusted shows nothing: what was seen there before is remembered.
+#[test]
+fn what_is_merely_unknown_is_remembered() {
+    let mut seen = view(&[(DVec3::new(3.0, 0.0, 10.0), 1.5)]);
+    let params = SteerParams { smoothing: 1.0, ..SteerParams::default() };
+    for (coverage, remembered) in [(0.0, true), (1.0, false)] {
+        let mut steering = Steering::new(params.clone().into()).unwrap();
+        steering.update(&observation(0.0, DMat3::IDENTITY, Some(&seen)));
+        assert!(!steering.obstacles().is_empty());
+        let mut nothing = view(&[]);
+        nothing.sectors.iter_mut().for_each(|sector| sector.coverage = coverage);
+        steering.update(&observation(1.0 / 30.0, DMat3::IDENTITY, Some(&nothing)));
+        assert_eq!(!steering.obstacles().is_empty(), remembered, "coverage {coverage}");
+    }
+    // Half an interval after the moment of its rate, the obstacle is nearer by what was flown since.
+    seen.interval_s = 0.5;
+    let nearest = |seen: &Sectors| {
+        let mut steering = Steering::new(params.clone().into()).unwrap();
+        steering.update(&observation(0.0, DMat3::IDENTITY, Some(seen)));
+        steering.obstacles().iter().map(|o| o.place_ned_m.length()).fold(f64::INFINITY, f64::min)
+    };
+    let late = nearest(&seen);
+    seen.interval_s = 0.0;
+    assert!((nearest(&seen) - late - 0.25 * SPEED_M_S).abs() < 1e-9, "{late}");
+}
+
 #[test]
 fn without_a_cue_it_holds_and_then_levels_and_climbs() {
     let config = SteerParams::default();

@@ -6,14 +6,14 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, affine_columns, binomial, block_sum, brightness_equations, cast, cell_confidence, cell_mean, cells,
-    compare, confidence, corner_response, correct, cubic_warp, downsample_flow, expansion_x, expansion_y,
-    expected_slope, fit_weight, gradient_equations, links, local_maxima, looming, luma, misfit, nonlocal,
-    normal_equations, normalized_expansion_x, normalized_expansion_y, patches, premultiply, pyr_down, remap,
-    resample_x, resample_y, residual, robust_equations, rotational_flow, row_maximum, sectors, sensor, shade,
-    slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, structure_tensor, sweep,
-    track_points, transport, undistort_map, unweight, upsample, warp, weighted_normal_equations,
-    weighted_robust_equations, window_y,
+    ALL, affine_columns, binomial, block_sum, brightness_equations, cast, cell_confidence, cell_evidence,
+    cell_mean, cells, compare, confidence, corner_response, correct, cubic_warp, downsample_flow,
+    expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations, links, local_maxima, looming,
+    luma, misfit, nonlocal, normal_equations, normalized_expansion_x, normalized_expansion_y, patches,
+    premultiply, pyr_down, remap, resample_x, resample_y, residual, robust_equations, rotational_flow,
+    row_maximum, sectors, sensor, shade, slope_weights, smoothness, solve, solve_affine, solve_increment,
+    spherical_flow, structure_tensor, sweep, track_points, transport, undistort_map, unweight, upsample,
+    warp, weighted_normal_equations, weighted_robust_equations, window_y,
 };
 
 use crate::need;
@@ -150,8 +150,14 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&spherical_flow::KERNEL, "-shift - (previous - unturned)", "-shift"),
     (&spherical_flow::KERNEL, "r.y * motion[1].xyz", "r.y * motion[2].xyz"),
     (&spherical_flow::KERNEL, "1.0 / 6.0", "1.0 / 3.0"),
-    (&cell_confidence::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
-    (&cell_confidence::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&cell_evidence::KERNEL, "select(0.0, 1.0, all(pixel < size))", "1.0"),
+    (&cell_evidence::KERNEL, "let b = share * m.delta_b", "let b = m.delta_b"),
+    (&cell_confidence::KERNEL, "* params.pitch) - v.xy", "* params.pitch) + v.xy"),
+    (&cell_confidence::KERNEL, "away * params.focal), every)", "away.yx * params.focal), every)"),
+    (&cell_confidence::KERNEL, "confidence[out + stride] = every", "confidence[out + stride] = along"),
+    (&cells::KERNEL, "(2u * cell.y + 1u)", "(2u * cell.y)"),
+    (&sectors::KERNEL, "every >= params.least_both", "every >= 0.0"),
+    (&sectors::KERNEL, "w * min(every / max(cells[at.x], 1e-6), 1.0)", "w"),
     (&warp::KERNEL, "place <= last", "place < last"),
     (&warp::KERNEL, "select(0.0, share, inside)", "share"),
     (&gradient_equations::KERNEL, "0.125 * ((above.i.z", "0.25 * ((above.i.z"),

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 use viewsphere::frame::Size;
 use viewsphere::gpu::Gpu;
 use viewsphere::kernel::Kernel;
+use viewsphere::kernels::cells::CHANNELS;
 use viewsphere::kernels::{looming, rotational_flow, spherical_flow};
 use viewsphere::sphere::{Heading, Motion, model};
 
@@ -114,13 +115,13 @@ fn errors_of_cells(pitch: f64) -> Vec<[f64; 2]> {
     let (normal, distance, v) = (DVec3::new(0.4, -0.2, 0.9).normalize(), 40.0, DVec3::new(0.05, 0.02, 0.33));
     let place = |x: u32, y: u32| [x, y].map(|i| pitch * (f64::from(i) - 0.5 * f64::from(side - 1)));
     let stride = size.stride();
-    let mut cells = vec![0.0; 5 * stride * side as usize];
-    for (y, rows) in (0..).zip(cells.chunks_exact_mut(5 * stride)) {
+    let mut cells = vec![0.0; CHANNELS * stride * side as usize];
+    for (y, rows) in (0..).zip(cells.chunks_exact_mut(CHANNELS * stride)) {
         for x in 0..stride {
             let at = place((x as u32).min(side - 1), y);
             let p = DVec3::new(at[0], at[1], 1.0).normalize();
             let rate = model::to_plane(p, model::bearing_rate(p, normal.dot(p) / distance, v, DVec3::ZERO));
-            for (channel, value) in [1.0, at[0], at[1], rate[0], rate[1]].into_iter().enumerate() {
+            for (channel, value) in [1.0, at[0], at[1], rate[0], rate[1], 1.0].into_iter().enumerate() {
                 rows[channel * stride + x] = value as f32;
             }
         }

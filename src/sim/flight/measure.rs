@@ -6,6 +6,7 @@ use super::perception::SensorInput;
 use crate::camera::{Camera, Pose};
 use crate::error::Result;
 use crate::frame::{Plane, Size};
+use crate::kernels::cells::CHANNELS;
 use crate::pipeline::Cue;
 use crate::quantile::median;
 use crate::sim::{Twist, query_rays};
@@ -76,12 +77,12 @@ impl Measure {
             let divergence_hz = if is_known { value(looming, 4, 1) / interval_s } else { f64::NAN };
             self.divergences.measured_hz.data[i] = divergence_hz as f32;
             self.divergences.true_hz.data[i] = truth.divergence_hz as f32;
-            let confidence = value(cells, 5, 0);
+            let confidence = value(cells, CHANNELS, 5);
             if !(confidence >= self.least_confidence) {
                 continue;
             }
-            let place = [1, 2].map(|channel| value(cells, 5, channel));
-            let off = [0, 1].map(|axis| value(cells, 5, 3 + axis) - truth.flow[axis]);
+            let place = [1, 2].map(|channel| value(cells, CHANNELS, channel));
+            let off = [0, 1].map(|axis| value(cells, CHANNELS, 3 + axis) - truth.flow[axis]);
             trusted.push((confidence, self.focal_px * model::from_plane(place, off).length()));
             let true_s = (truth.nearness_per_m * velocity_m_s.length()).recip();
             if is_known && (JUDGED_S[0]..=JUDGED_S[1]).contains(&true_s) {
@@ -157,8 +158,8 @@ mod tests {
             focal: [44.0, 46.0],
             centre: [47.0, 36.0],
         };
-        let confidence = vec![1.0; 24 * 18];
-        let mut cells = vec![0.0; 5 * 24 * 18];
+        let confidence = vec![1.0; 2 * 24 * 18];
+        let mut cells = vec![0.0; CHANNELS * 24 * 18];
         (KERNEL.reference)(
             bytemuck::bytes_of(&params),
             &[&pixels, &motion, &known, &confidence],
