@@ -48,7 +48,7 @@ Examples:
     --gyro set/gyro.csv --camera-from-gyro frd --heading turning")]
 pub(super) struct Simulate {
     /// World, with parameters such as forest:density=1/64: wall, corridor, city, forest, pillars, poisson-forest,
-    /// dead-end, wires
+    /// dead-end, wires, gates
     #[arg(long, value_name = "WORLD", default_value = "city")]
     world: CourseKind,
     /// Seed of the world and of all other random values

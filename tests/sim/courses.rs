@@ -1,7 +1,7 @@
 //! Courses: for any seed they match their parameters, and they do not change.
 
 use glam::{DVec2, DVec3};
-use viewsphere::sim::course::{City, Corridor, DeadEnd, Forest, PoissonForest, Wall, Wires};
+use viewsphere::sim::course::{City, Corridor, DeadEnd, Forest, Gates, PoissonForest, Wall, Wires};
 use viewsphere::sim::{Course, CourseKind, Form};
 
 const SEEDS: u64 = 40;
@@ -296,6 +296,52 @@ fn wires_cross_the_way_and_leave_room_above_and_below() {
 }
 
 #[test]
+fn gates_open_under_their_beams() {
+    for seed in 0..SEEDS {
+        let course = Gates::default().course(seed).unwrap();
+        assert_eq!((course.world.surfaces.len() - 1) % 3, 0);
+        for gate in course.world.surfaces[1..].chunks(3) {
+            let [left, right, beam] = gate else { unreachable!() };
+            let Form::Rectangle { centre_world, to_right, to_top } = beam.form() else { panic!("{beam:?}") };
+            let bottom_m = -(centre_world.z - to_top.z);
+            assert!((14.0..=16.0).contains(&bottom_m) && (4.0..=6.0).contains(&to_right.y), "{bottom_m}");
+            // In the middle of the opening a wall is as far as half its width.
+            let middle = centre_world.with_z(-8.0);
+            for side in [left, right] {
+                assert!((side.distance_m(middle) - to_right.y).abs() < 1e-9);
+            }
+            assert!(
+                course.world.hit(middle - DVec3::X * 5.0, DVec3::X).is_none_or(|hit| hit.distance_m > 40.0)
+            );
+        }
+    }
+}
+
+#[test]
+fn trees_lean_and_have_crowns() {
+    let forest = Forest { lean_deg: [5.0, 15.0], crown_m: [1.0, 2.0], ..Forest::default() };
+    let plain = trunks(&Forest::default().course(3).unwrap());
+    let course = forest.course(3).unwrap();
+    let trees = course.world.surfaces[1..].chunks(2);
+    assert_eq!(trees.len(), plain.len(), "the same trees stand at the same places");
+    for (tree, (place, radius, height)) in trees.zip(plain) {
+        let [
+            Form::Cylinder { base_world, top_world, radius_m },
+            Form::Cylinder { base_world: from, top_world: to, radius_m: crown_m },
+        ] = [tree[0].form(), tree[1].form()]
+        else {
+            panic!("{tree:?}")
+        };
+        assert_eq!((base_world.truncate(), radius_m, -top_world.z), (place, radius, height));
+        let lean_deg = (base_world.truncate().distance(top_world.truncate()) / height).atan().to_degrees();
+        assert!((5.0..=15.0).contains(&lean_deg) && (1.0..=2.0).contains(&crown_m));
+        assert!(
+            from.truncate() == to.truncate() && to.z == top_world.z && (from.z + 0.6 * height).abs() < 1e-9
+        );
+    }
+}
+
+#[test]
 fn what_is_skipped_as_too_far_is_never_the_nearest() {
     for kind in CourseKind::all() {
         let course = kind.course(1).unwrap();
@@ -335,6 +381,7 @@ fn the_courses_of_a_seed_stay_what_they_are() {
         "poisson-forest 247 65.000000 141.528606",
         "dead-end 4 145.811809 168.437428",
         "wires 22 200.000000 175.981698",
+        "gates 10 200.000000 176.216888",
     ];
     assert_eq!(sums, expected);
 }

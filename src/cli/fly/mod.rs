@@ -36,8 +36,8 @@ use crate::steer::{Danger, Policy, SteerParams};
 /// Fly through a simulated world, steered by what the sensor sees, and record the flight.
 ///
 /// Each frame, at 30 Hz, is rendered, its flow computed, and a command derived from it, until the goal is reached or
-/// something else ends the flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end and
-/// wires, with parameters after colons, or a file. The same arguments give the same flight: on the same adapter
+/// something else ends the flight. Worlds are wall, corridor, city, forest, pillars, poisson-forest, dead-end,
+/// wires and gates, with parameters after colons, or a file. The same arguments give the same flight: on the same adapter
 /// flight.jsonl and flight.y4m are identical byte for byte. Computing times, in timing.json and report.html, differ.
 ///
 /// Files in the folder: flight.jsonl, one JSON object per line: first the settings (version, world, seed, all options,

@@ -2,7 +2,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::field::Field;
-use super::{City, Corridor, Course, DeadEnd, Forest, PoissonForest, Wall, Wires};
+use super::{City, Corridor, Course, DeadEnd, Forest, Gates, PoissonForest, Wall, Wires};
 use crate::error::{Error, Result};
 
 /// A generator of courses with its parameters.
@@ -29,11 +29,13 @@ pub enum CourseKind {
     DeadEnd(DeadEnd),
     /// `wires`.
     Wires(Wires),
+    /// `gates`.
+    Gates(Gates),
 }
 
 impl CourseKind {
     /// All kinds with their defaults.
-    pub fn all() -> [Self; 8] {
+    pub fn all() -> [Self; 9] {
         [
             Self::Wall(Wall::default()),
             Self::Corridor(Corridor::default()),
@@ -43,6 +45,7 @@ impl CourseKind {
             Self::PoissonForest(PoissonForest::default()),
             Self::DeadEnd(DeadEnd::default()),
             Self::Wires(Wires::default()),
+            Self::Gates(Gates::default()),
         ]
     }
 
@@ -57,6 +60,7 @@ impl CourseKind {
             Self::PoissonForest(_) => "poisson-forest",
             Self::DeadEnd(_) => "dead-end",
             Self::Wires(_) => "wires",
+            Self::Gates(_) => "gates",
         }
     }
 
@@ -73,6 +77,7 @@ impl CourseKind {
             Self::PoissonForest(forest) => forest.course(seed),
             Self::DeadEnd(dead_end) => dead_end.course(seed),
             Self::Wires(wires) => wires.course(seed),
+            Self::Gates(gates) => gates.course(seed),
         }?;
         Ok(Course { name: self.to_string(), ..course })
     }
@@ -86,6 +91,7 @@ impl CourseKind {
             Self::PoissonForest(forest) => forest.fields(),
             Self::DeadEnd(dead_end) => dead_end.fields(),
             Self::Wires(wires) => wires.fields(),
+            Self::Gates(gates) => gates.fields(),
         }
     }
 

@@ -23,6 +23,7 @@ mod field;
 #[cfg(all(feature = "io", feature = "serde"))]
 pub mod file;
 mod forest;
+mod gates;
 mod kind;
 mod poisson_forest;
 mod scatter;
@@ -35,6 +36,7 @@ pub use self::city::City;
 pub use self::corridor::Corridor;
 pub use self::dead_end::DeadEnd;
 pub use self::forest::Forest;
+pub use self::gates::Gates;
 pub use self::kind::CourseKind;
 pub use self::poisson_forest::PoissonForest;
 pub use self::wall::Wall;
