@@ -46,10 +46,17 @@ pub(super) struct Iteration {
 }
 
 impl CoarseToFine {
-    /// Allocates the buffers for these levels, finest first. If iterations add to the flow so far, they write
-    /// alternately to two buffers.
-    pub(super) fn new(bufs: &mut Bufs, levels: &[Level], pyr_scale: f64, wanted: Wanted, adds: bool) -> Self {
+    /// Allocates the buffers for these levels, finest first. `adding` tells how many of a level's iterations add to the flow so
+    /// far: all or none. Those that do write alternately to two buffers.
+    pub(super) fn new(
+        bufs: &mut Bufs,
+        levels: &[Level],
+        pyr_scale: f64,
+        wanted: Wanted,
+        adding: impl Fn(usize) -> u32,
+    ) -> Self {
         let (finest, coarsest) = (levels[0].size, levels[levels.len() - 1].size);
+        let has_start = |k: usize| wanted.initial_flow || k + 1 < levels.len();
         let start = if wanted.initial_flow {
             Start::Given([
                 bufs.constant("columns of the initial flow", tables::cover(finest.width, coarsest.width)),
@@ -61,7 +68,7 @@ impl CoarseToFine {
         let flow_level = |(k, &level): (usize, &Level)| FlowLevel {
             level,
             flow: (k > 0).then(|| bufs.computed(format!("flow, level {k}"), Shape::planar(level.size, 2))),
-            other: adds
+            other: (adding(k) + u32::from(has_start(k)) > 1 && adding(k) > 0)
                 .then(|| bufs.computed(format!("flow so far, level {k}"), Shape::planar(level.size, 2))),
             place: levels.get(k + 1).map(|coarser| {
                 [

@@ -47,8 +47,8 @@ pub(super) struct Expansions {
     /// For each level, finest first, the kept images of both slots.
     pub(super) images: Vec<Option<[BufId; 2]>>,
     expanded: Expanded,
-    /// For each level, finest first, the expansions in both slots.
-    pub(super) levels: Vec<[Expansion; 2]>,
+    /// For each level that is expanded, finest first, the expansions in both slots.
+    levels: Vec<Option<[Expansion; 2]>>,
     /// The further buffers that a certainty needs.
     pub(super) normalized: Option<Normalized>,
     size: Size,
@@ -56,7 +56,8 @@ pub(super) struct Expansions {
     applicability: Applicability,
     weights_y: BufId,
     weights_x: BufId,
-    image: BufId,
+    /// The image of a level that is not kept; `None` if all are.
+    image: Option<BufId>,
     /// The tables of the expansion without certainty.
     moments: Option<BufId>,
     pyramid: Pyramid,
@@ -73,14 +74,20 @@ impl Expansions {
     ) -> Self {
         let Expanded { poly_n, poly_sigma, skip, kept_images, .. } = expanded;
         let applicability = tables::applicability(poly_n, poly_sigma);
-        let normalized = certainty.then(|| Normalized::new(bufs, size, levels, expanded.outside));
+        // The largest level that is expanded.
+        let own = levels[skip].size;
+        let is_reduced = |k: usize| k > 0 || !expanded.unsmoothed;
+        let unkept = (skip + kept_images..levels.len()).find(|k| is_reduced(*k));
+        let normalized = certainty.then(|| Normalized::new(bufs, size, own, expanded.outside));
         let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: usize| {
             let frames = ["even frames", "odd frames"][slot];
             Expansion {
                 quad: bufs.computed(format!("quad, level {k}, {frames}"), Shape::quads(level.size)),
                 cross_term: bufs
                     .computed(format!("cross term, level {k}, {frames}"), Shape::planar(level.size, 1)),
-                certainty: normalized.as_ref().map(|normalized| normalized.expansion(k, slot)),
+                certainty: certainty.then(|| {
+                    bufs.computed(format!("certainty, level {k}, {frames}"), Shape::planar(level.size, 1))
+                }),
             }
         };
         let images = levels.iter().enumerate().map(|(k, level)| {
@@ -95,7 +102,7 @@ impl Expansions {
             levels: levels
                 .iter()
                 .enumerate()
-                .map(|(k, level)| [0, 1].map(|slot| expansion(bufs, k, level, slot)))
+                .map(|(k, level)| (k >= skip).then(|| [0, 1].map(|slot| expansion(bufs, k, level, slot))))
                 .collect(),
             size,
             radius: poly_n,
@@ -108,11 +115,19 @@ impl Expansions {
                 tables::applicability_from(&applicability.weights, (poly_n as usize).next_multiple_of(4)),
             ),
             applicability,
-            image: bufs.computed("level's image", Shape::planar(size, 1)),
-            moments: normalized.is_none().then(|| bufs.computed("moments", Shape::planar(size, 3))),
+            image: unkept.map(|k| bufs.computed("level's image", Shape::planar(levels[k].size, 1))),
+            moments: normalized.is_none().then(|| bufs.computed("moments", Shape::planar(own, 3))),
             normalized,
-            pyramid: Pyramid::new(bufs, size, levels),
+            pyramid: Pyramid::new(bufs, size, levels, |k| k >= skip),
             sizes: levels.iter().map(|level| level.size).collect(),
+        }
+    }
+
+    /// The expansion of level `k`, which is not left out, in a slot.
+    pub(super) fn level(&self, k: usize, slot: usize) -> Expansion {
+        match self.levels[k] {
+            Some(slots) => slots[slot],
+            None => unreachable!("level {k} is left out"),
         }
     }
 
@@ -122,32 +137,29 @@ impl Expansions {
         let pictures = match (&self.normalized, certainty) {
             (Some(normalized), Some(certainty)) => {
                 steps.push(normalized.premultiply(gray, certainty, self.size));
-                normalized.pictures(self.image)
+                vec![(normalized.weighted(), self.image), (normalized.certainty(), Some(normalized.level()))]
             }
-            _ => vec![[gray, self.image]],
+            _ => vec![(gray, self.image)],
         };
         for (k, size) in self.sizes.iter().enumerate().skip(self.expanded.skip) {
-            let mut images = [self.image; 2];
-            for (i, &[full, image]) in pictures.iter().enumerate() {
-                let kept = if i == 0 { self.images[k].map(|images| images[slot]) } else { None };
-                if k > 0 || !self.expanded.unsmoothed {
-                    images[i] = kept.unwrap_or(image);
-                    self.pyramid.reduce(&mut steps, k, full, images[i]);
-                } else {
-                    images[i] = full;
-                    if let Some(kept) = kept {
-                        self.pyramid.reduce(&mut steps, k, full, kept);
-                    }
+            let mut images = Vec::new();
+            for (i, &(full, image)) in pictures.iter().enumerate() {
+                let kept = self.images[k].map(|images| images[slot]).filter(|_| i == 0);
+                let is_full = k == 0 && self.expanded.unsmoothed;
+                let reduced = if is_full { kept } else { kept.or(image) };
+                if let Some(reduced) = reduced {
+                    self.pyramid.reduce(&mut steps, k, full, reduced);
                 }
+                images.extend(if is_full { Some(full) } else { reduced });
             }
-            self.expand(&mut steps, k, *size, slot, images);
+            self.expand(&mut steps, k, *size, slot, &images);
         }
         steps
     }
 
     /// The polynomial expansion of a level's image, the first of `images`; the second is its certainty, if frames have one.
-    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize, images: [BufId; 2]) {
-        let Expansion { quad, cross_term, certainty } = self.levels[k][slot];
+    fn expand(&self, steps: &mut Vec<Step>, k: usize, size: Size, slot: usize, images: &[BufId]) {
+        let Expansion { quad, cross_term, certainty } = self.level(k, slot);
         if let (Some(normalized), Some(certainty)) = (&self.normalized, certainty) {
             let inputs = [images[0], images[1], self.weights_y, self.weights_x];
             steps.extend(normalized.expand(k, size, self.radius, inputs, [quad, cross_term, certainty]));

@@ -110,8 +110,8 @@ impl Estimator for LucasKanade {
         let levels = levels(size, self.pyr_scale, self.levels);
         let plane = Shape::planar(size, 1);
         Box::new(LucasKanadeStages {
-            images: Images::new(bufs, size, &levels, 0, wanted),
-            coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, false),
+            images: Images::new(bufs, size, &levels, |_| true, wanted),
+            coarse_to_fine: CoarseToFine::new(bufs, &levels, self.pyr_scale, wanted, |_| 0),
             gradients: Gradients::new(bufs, size, self.winsize, self.window == Window::Gaussian),
             confidence: (wanted.confidence || wanted.evidence).then(|| bufs.computed("confidence", plane)),
             iterations: self.iterations,

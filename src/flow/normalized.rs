@@ -1,6 +1,5 @@
 //! The expansion of a frame whose pixels have a certainty, by normalised convolution.
 
-use super::Level;
 use crate::frame::Size;
 use crate::kernels::{normalized_expansion_x, normalized_expansion_y, premultiply};
 use crate::plan::{BufId, Bufs, Shape, Step};
@@ -13,39 +12,36 @@ pub(super) struct Normalized {
     /// The certainty reduced to a level.
     level: BufId,
     moments: BufId,
-    /// The certainty of each level's expansion, finest first, in both slots.
-    expansions: Vec<[BufId; 2]>,
     /// The weight of what the border is repeated with outside the image.
     outside: f32,
 }
 
 impl Normalized {
-    pub(super) fn new(bufs: &mut Bufs, size: Size, levels: &[Level], outside: f32) -> Self {
+    /// Allocates the buffers for images of this size, whose largest level that is expanded has the size `own`.
+    pub(super) fn new(bufs: &mut Bufs, size: Size, own: Size, outside: f32) -> Self {
         let plane = Shape::planar(size, 1);
-        let expansion = |bufs: &mut Bufs, k: usize, level: &Level, slot: &str| {
-            bufs.computed(format!("certainty, level {k}, {slot} frames"), Shape::planar(level.size, 1))
-        };
         Self {
             weighted: bufs.computed("weighted gray", plane),
             certainty: bufs.computed("clamped certainty", plane),
-            level: bufs.computed("level's certainty", plane),
-            moments: bufs.computed("weighted moments", Shape::planar(size, 8)),
-            expansions: (levels.iter().enumerate())
-                .map(|(k, level)| ["even", "odd"].map(|slot| expansion(bufs, k, level, slot)))
-                .collect(),
+            level: bufs.computed("level's certainty", Shape::planar(own, 1)),
+            moments: bufs.computed("weighted moments", Shape::planar(own, 8)),
             outside,
         }
     }
 
-    /// The images that are smoothed and reduced for each level, and their destinations, with the level's image in
-    /// `image`.
-    pub(super) fn pictures(&self, image: BufId) -> Vec<[BufId; 2]> {
-        vec![[self.weighted, image], [self.certainty, self.level]]
+    /// The image times its certainty, which is smoothed and reduced for each level.
+    pub(super) fn weighted(&self) -> BufId {
+        self.weighted
     }
 
-    /// The buffer of the certainty of a level's expansion.
-    pub(super) fn expansion(&self, k: usize, slot: usize) -> BufId {
-        self.expansions[k][slot]
+    /// The certainty, which is smoothed and reduced for each level, too.
+    pub(super) fn certainty(&self) -> BufId {
+        self.certainty
+    }
+
+    /// The destination of a level's certainty.
+    pub(super) fn level(&self) -> BufId {
+        self.level
     }
 
     /// The step that multiplies a gray image by its certainty.

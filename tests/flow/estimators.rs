@@ -1,7 +1,7 @@
 //! Properties of every estimator: the same bytes every time, no NaN at any size, a stream with the bits of single
 //! pairs (of the first one, for an estimator with memory), a certainty that masks, and both executors near each other.
 
-use viewsphere::flow::{Algorithm, Parameters};
+use viewsphere::flow::{Algorithm, FlowOptions, Initial, Parameters, plan};
 use viewsphere::frame::{FlowField, Image, PixelFormat, Plane, Size};
 use viewsphere::kernels::test_inputs::Random;
 use viewsphere::{Backend, Config, Engine};
@@ -53,6 +53,28 @@ fn executors(f: impl Fn(On<'_>)) {
     f(On::Cpu);
     if let Some(gpu) = need::gpu_if_any() {
         f(On::Gpu(&gpu));
+    }
+}
+
+/// Every buffer is one that a step or a port uses: levels that are left out, and parts that are not wanted, take no memory.
+fn allocates_what_it_uses(algorithm: &Algorithm) {
+    for (name, _) in algorithm.presets() {
+        for options in 0..8 {
+            let [certainty, confidence, given] = [1, 2, 4].map(|bit| options & bit > 0);
+            let initial = if given { Initial::Given } else { Initial::Zero };
+            let options = FlowOptions { certainty, confidence, initial };
+            let algorithm = Algorithm::named(algorithm.name(), name).unwrap();
+            let plan = plan(&algorithm, Size::new(320, 240), PixelFormat::Gray8, options).unwrap();
+            let mut used = vec![false; plan.bufs.len()];
+            let steps = plan.setup.iter().chain(plan.steps(0)).chain(plan.steps(1));
+            let of_steps = steps
+                .flat_map(|step| step.inputs.iter().copied().chain(step.outputs.iter().map(|(buf, _)| *buf)));
+            let of_ports = plan.inputs.iter().chain(&plan.outputs).flat_map(|port| port.bufs);
+            of_steps.chain(of_ports).for_each(|buf| used[buf.index()] = true);
+            let unused = plan.bufs.iter().zip(used).filter(|(_, used)| !used).map(|(buf, _)| &buf.name);
+            let unused: Vec<&String> = unused.collect();
+            assert!(unused.is_empty(), "{} {name} {options:?}: {unused:?}", algorithm.name());
+        }
     }
 }
 
@@ -179,7 +201,7 @@ macro_rules! tests {
             viewsphere::flow::$Type::default().into()
         }
         tests!(@each
-            finds_a_motion_and_gives_the_same_bytes_twice gives_numbers_at_every_size a_stream_gives_the_bits_of_pairs
+            allocates_what_it_uses finds_a_motion_and_gives_the_same_bytes_twice gives_numbers_at_every_size a_stream_gives_the_bits_of_pairs
             a_certainty_masks the_confidence_tells_texture_from_none both_executors_agree
         );
     })* };

@@ -34,12 +34,21 @@ pub(super) struct Displacement {
     /// The weight of pixels that the flow takes outside the second frame.
     outside: f32,
     window_y: BufId,
-    window_x: BufId,
     equations: BufId,
-    columns: BufId,
+    /// The average that a constant motion and the confidence take.
+    average: Option<Average>,
     /// The columns' moments, if the motion is affine.
     moments: Option<BufId>,
     evidence: Option<Evidence>,
+}
+
+/// The buffers of the equations' average over a window.
+#[derive(Clone, Copy)]
+struct Average {
+    /// The equations averaged along columns only.
+    columns: BufId,
+    /// The window's weights along rows.
+    window_x: BufId,
 }
 
 /// The buffers of the confidence.
@@ -55,7 +64,8 @@ impl Displacement {
         let adds = config.update != Update::Flow;
         // The solution of an affine motion reads the flow so far beside its output, so that they are two buffers.
         let affine = config.motion == Motion::Affine;
-        let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, adds || affine);
+        let adding = if adds || affine { config.iterations } else { 0 };
+        let coarse_to_fine = CoarseToFine::new(bufs, levels, config.pyr_scale, wanted, |_| adding);
         let window = tables::window(config.winsize, config.window == Window::Gaussian);
         let radius = window.len() / 2;
         Self {
@@ -67,9 +77,11 @@ impl Displacement {
             radius: radius as u32,
             outside: if config.outside == Outside::First { 1.0 } else { 0.0 },
             window_y: bufs.constant("window, columns", tables::window_from(&window, radius)),
-            window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
             equations: bufs.computed("equations", Shape::planar(finest, 5)),
-            columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
+            average: (!affine || wanted.confidence).then(|| Average {
+                columns: bufs.computed("averaged columns", Shape::planar(finest, 5)),
+                window_x: bufs.constant("window, rows", tables::window_from(&window, radius.next_multiple_of(4))),
+            }),
             moments: affine.then(|| {
                 bufs.computed("moments of columns", Shape::planar(finest, affine_columns::CHANNELS))
             }),
@@ -95,7 +107,7 @@ impl Displacement {
         given: BufId,
         flow: BufId,
     ) -> Vec<Step> {
-        let pair = |k: usize| [expansions.levels[k][first], expansions.levels[k][second]];
+        let pair = |k: usize| [first, second].map(|slot| expansions.level(k, slot));
         let mut steps = self.coarse_to_fine.steps(|_| self.iterations, given, flow, |steps, iteration| {
             self.iterate(steps, &iteration, pair(iteration.k));
         });
@@ -103,6 +115,10 @@ impl Displacement {
             self.judge(&mut steps, evidence, self.finest, pair(0), flow);
         }
         steps
+    }
+
+    fn average(&self) -> Average {
+        self.average.unwrap_or_else(|| unreachable!("a constant motion and the confidence have one"))
     }
 
     fn iterate(
@@ -119,12 +135,13 @@ impl Displacement {
         if let Some(moments) = self.moments {
             return self.solve_affine(steps, iteration, moments);
         }
+        let Average { columns, window_x } = self.average();
         steps.push(Step::new(
             &window_y::KERNEL,
             label.clone(),
             window_y::Params { width, height, radius: self.radius },
             &[self.equations, self.window_y],
-            &[(self.columns, five)],
+            &[(columns, five)],
         ));
         let radius = self.radius;
         let flow = [(*flow, Shape::planar(size, 2))];
@@ -132,12 +149,12 @@ impl Displacement {
         steps.push(match self.adds {
             false => {
                 let params = solve::Params { width, height, radius };
-                Step::new(&solve::KERNEL, label, params, &[self.columns, self.window_x], &flow)
+                Step::new(&solve::KERNEL, label, params, &[columns, window_x], &flow)
             }
             true => {
                 let regular = if self.normalized { REGULAR } else { 1e-3 };
                 let params = solve_increment::Params { width, height, radius, regular };
-                Step::new(&solve_increment::KERNEL, label, params, &[self.columns, self.window_x, so_far], &flow)
+                Step::new(&solve_increment::KERNEL, label, params, &[columns, window_x, so_far], &flow)
             }
         });
     }
@@ -207,6 +224,7 @@ impl Displacement {
     ) {
         let (width, height) = (level.size.width, level.size.height);
         let five = Shape::planar(level.size, 5);
+        let Average { columns, window_x } = self.average();
         let certainty =
             evidence.certainty.or(first.certainty).unwrap_or_else(|| unreachable!("there is one of the two"));
         steps.push(Step::new(
@@ -221,13 +239,13 @@ impl Displacement {
             "confidence",
             window_y::Params { width, height, radius: self.radius },
             &[self.equations, self.window_y],
-            &[(self.columns, five)],
+            &[(columns, five)],
         ));
         steps.push(Step::new(
             &confidence::KERNEL,
             "confidence",
             confidence::Params { width, height, radius: self.radius },
-            &[self.columns, self.window_x],
+            &[columns, window_x],
             &[(evidence.confidence, Shape::planar(level.size, 1))],
         ));
     }

@@ -245,7 +245,7 @@ impl Stages for FarnebackStages {
     }
 
     fn evidence(&self, slots: [usize; 2]) -> Evidence {
-        let [first, second] = slots.map(|slot| self.expansions.levels[0][slot]);
+        let [first, second] = slots.map(|slot| self.expansions.level(0, slot));
         Evidence::Expansions([first.quad, first.cross_term, second.quad, second.cross_term])
     }
 }

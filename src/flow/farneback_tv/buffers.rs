@@ -64,18 +64,19 @@ impl Slopes {
 pub(super) struct Fit {
     pub(super) squared_misfit: BufId,
     pub(super) agreement: BufId,
-    pub(super) weight: BufId,
+    /// What the non-local step makes of the misfit, if there is one.
+    pub(super) weight: Option<BufId>,
     /// The certainty of frames that have none.
     pub(super) certainty: Option<BufId>,
 }
 
 impl Fit {
-    pub(super) fn new(bufs: &mut Bufs, size: Size, certainty: bool) -> Self {
+    pub(super) fn new(bufs: &mut Bufs, size: Size, certainty: bool, nonlocal: bool) -> Self {
         let plane = Shape::planar(size, 1);
         Self {
             squared_misfit: bufs.computed("squared misfit", plane),
             agreement: bufs.computed("agreement", plane),
-            weight: bufs.computed("weight of the fit", plane),
+            weight: nonlocal.then(|| bufs.computed("weight of the fit", plane)),
             certainty: (!certainty).then(|| bufs.constant("full certainty", vec![1.0; plane.len()])),
         }
     }
@@ -86,13 +87,18 @@ pub(super) struct Confidence {
     /// The result, at the size of the images.
     pub(super) plane: BufId,
     pub(super) columns: BufId,
-    /// The confidence of the finest computed level.
-    pub(super) full: BufId,
-    /// The tables that enlarge it, if that level is not the images' own.
-    pub(super) enlarged: Option<[BufId; 2]>,
+    /// If the finest computed level is not the images' own.
+    pub(super) enlarged: Option<Enlarged>,
     pub(super) gauss: BufId,
     pub(super) taps: u32,
     /// The tables that keep columns and rows where they are.
+    pub(super) place: [BufId; 2],
+}
+
+/// The confidence of a level that is enlarged to the images' size.
+#[derive(Clone, Copy)]
+pub(super) struct Enlarged {
+    pub(super) from: BufId,
     pub(super) place: [BufId; 2],
 }
 
@@ -105,12 +111,12 @@ impl Confidence {
         Self {
             plane: bufs.computed("confidence", Shape::planar(size, 1)),
             columns: bufs.computed("confidence, columns", plane),
-            full: bufs.computed("confidence of the finest level", plane),
-            enlarged: (own != size).then(|| {
-                [
+            enlarged: (own != size).then(|| Enlarged {
+                from: bufs.computed("confidence of the finest level", plane),
+                place: [
                     bufs.constant("columns of the confidence", tables::place(own.width, size.width)),
                     bufs.constant("rows of the confidence", tables::place(own.height, size.height)),
-                ]
+                ],
             }),
             gauss: bufs.constant("Gaussian of the confidence", tables::gauss(sigma, taps)),
             taps,

@@ -25,7 +25,7 @@ impl Parameters for FarnebackTv {
         ("default", "The same as light"),
         ("medium", "Full size, 1 warp and a non-local step"),
         ("accurate", "Full size, 2 warps and a non-local step"),
-        ("fine", "The same for thin things: alpha 1.2, spacing 2"),
+        ("fine", "As accurate, for thin things: alpha 1.2, spacing 2"),
         ("best", "More levels, 3 warps, 49 samples, for recorded frames"),
     ];
 

@@ -1,7 +1,7 @@
 //! The buffers and steps of the method.
 
 use super::FarnebackTv;
-use super::buffers::{Confidence, Fit, Slopes, Window};
+use super::buffers::{Confidence, Enlarged, Fit, Slopes, Window};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::expansions::{Expanded, Expansion, Expansions};
 use crate::flow::levels::levels_down_to;
@@ -38,6 +38,8 @@ pub(super) struct FarnebackTvStages {
     levels: Vec<Level>,
     /// The number of the finest computed level.
     finest: usize,
+    /// How many levels, from that one on, end with a non-local step.
+    nonlocal: usize,
     expansions: Expansions,
     coarse_to_fine: CoarseToFine,
     equations: BufId,
@@ -51,12 +53,23 @@ pub(super) struct FarnebackTvStages {
     confidence: Option<Confidence>,
 }
 
+/// The warps of a computed level.
+fn warps(config: &FarnebackTv, k: usize, finest: usize) -> u32 {
+    if k == finest { config.warps } else { config.coarse_warps }
+}
+
+/// The writes of the flow on a level: the windowed increment, two runs of sweeps per warp, and the non-local step.
+fn iterations(config: &FarnebackTv, k: usize, finest: usize, nonlocal: usize) -> u32 {
+    if k < finest { 0 } else { 1 + 2 * warps(config, k, finest) + u32::from(k < finest + nonlocal) }
+}
+
 impl FarnebackTvStages {
     pub(super) fn new(bufs: &mut Bufs, config: &FarnebackTv, size: Size, wanted: Wanted) -> Self {
         let levels = levels_down_to(size, config.pyr_scale, 64, f64::from(config.smallest));
         let finest = (config.skip as usize).min(levels.len() - 1);
         let nonlocal = levels[finest..].iter().filter(|level| level.scale >= config.nonlocal_scale - 1e-9).count();
         let nonlocal = if config.samples > 0 { nonlocal } else { 0 };
+        let iterations = |k: usize| iterations(config, k, finest, nonlocal);
         let expanded = Expanded {
             poly_n: POLY.0,
             poly_sigma: POLY.1,
@@ -71,7 +84,7 @@ impl FarnebackTvStages {
         Self {
             config: config.clone(),
             expansions: Expansions::new(bufs, expanded, size, &levels, wanted.certainty),
-            coarse_to_fine: CoarseToFine::new(bufs, &levels, config.pyr_scale, wanted, true),
+            coarse_to_fine: CoarseToFine::new(bufs, &levels, config.pyr_scale, wanted, iterations),
             equations: bufs.computed("equations", five),
             columns: bufs.computed("averaged columns", five),
             increment: Window::new(bufs, "window of increments", INCREMENT_WINDOW),
@@ -79,25 +92,21 @@ impl FarnebackTvStages {
             smooth_weight: bufs.computed("smoothness", one),
             system: bufs.computed("system", five),
             link: bufs.computed("links", two),
-            fit: (nonlocal > 0 || confidence).then(|| Fit::new(bufs, own, wanted.certainty)),
+            fit: (nonlocal > 0 || confidence).then(|| Fit::new(bufs, own, wanted.certainty, nonlocal > 0)),
             confidence: confidence.then(|| Confidence::new(bufs, own, size)),
             finest,
+            nonlocal,
             levels,
         }
     }
 
-    /// Whether a level ends with a non-local step.
+    /// Whether a computed level ends with a non-local step.
     fn is_nonlocal(&self, k: usize) -> bool {
-        self.expansions.images[k].is_some()
+        k < self.finest + self.nonlocal
     }
 
-    fn warps(&self, k: usize) -> u32 {
-        if k == self.finest { self.config.warps } else { self.config.coarse_warps }
-    }
-
-    /// The writes of the flow on a level: the windowed increment, two runs of sweeps per warp, and the non-local step.
     fn iterations(&self, k: usize) -> u32 {
-        if k < self.finest { 0 } else { 1 + 2 * self.warps(k) + u32::from(self.is_nonlocal(k)) }
+        iterations(&self.config, k, self.finest, self.nonlocal)
     }
 
     /// The buffer of the slopes that are expected on a level, once its first iteration has run.
@@ -109,7 +118,7 @@ impl FarnebackTvStages {
     }
 
     fn averages_slopes(&self, k: usize) -> bool {
-        self.levels[k].scale <= SLOPE_SCALE + 1e-6 && self.warps(k) > 0
+        self.levels[k].scale <= SLOPE_SCALE + 1e-6 && warps(&self.config, k, self.finest) > 0
     }
 
     fn iterate(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [Expansion; 2], slot: usize) {
@@ -274,9 +283,10 @@ impl FarnebackTvStages {
     fn nonlocal(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [Expansion; 2], slot: usize) {
         let Iteration { k, level, so_far, flow, ref label, .. } = *iteration;
         let (Some(fit), Some(images)) = (&self.fit, self.expansions.images[k]) else { return };
+        let Some(weight) = fit.weight else { return };
         self.misfit(steps, label, level, pair, so_far);
         let Size { width, height } = level.size;
-        let plane = [(fit.weight, Shape::planar(level.size, 1))];
+        let plane = [(weight, Shape::planar(level.size, 1))];
         let params = fit_weight::Params { width, height };
         steps.push(Step::new(&fit_weight::KERNEL, label.clone(), params, &[fit.squared_misfit], &plane));
         // The nearness of samples falls off with their spacing.
@@ -291,7 +301,7 @@ impl FarnebackTvStages {
             tone: 1.0 / (20.0 * 20.0),
             robust: 0.05 * 0.05,
         };
-        let inputs = [so_far, self.slope(k), images[slot], fit.weight];
+        let inputs = [so_far, self.slope(k), images[slot], weight];
         let output = [(flow, Shape::planar(level.size, 2))];
         steps.push(Step::new(&nonlocal::KERNEL, label.clone(), params, &inputs, &output));
     }
@@ -313,7 +323,7 @@ impl FarnebackTvStages {
             &[fit.agreement, confidence.gauss, place_y],
             &[(confidence.columns, plane)],
         ));
-        let whole = if confidence.enlarged.is_some() { confidence.full } else { confidence.plane };
+        let whole = confidence.enlarged.map_or(confidence.plane, |enlarged| enlarged.from);
         steps.push(Step::new(
             &resample_x::KERNEL,
             label,
@@ -321,7 +331,7 @@ impl FarnebackTvStages {
             &[confidence.columns, confidence.gauss, place_x],
             &[(whole, plane)],
         ));
-        if let Some([place_x, place_y]) = confidence.enlarged {
+        if let Some(Enlarged { place: [place_x, place_y], .. }) = confidence.enlarged {
             let full = self.levels[0].size;
             let params = upsample::Params {
                 width: full.width,
@@ -343,7 +353,7 @@ impl Stages for FarnebackTvStages {
     }
 
     fn pair(&self, _parity: usize, [first, second]: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
-        let pair = |k: usize| [self.expansions.levels[k][first], self.expansions.levels[k][second]];
+        let pair = |k: usize| [first, second].map(|slot| self.expansions.level(k, slot));
         let iterations = |k: usize| self.iterations(k);
         let mut steps = self.coarse_to_fine.steps(iterations, initial, flow, |steps, iteration| {
             self.iterate(steps, &iteration, pair(iteration.k), first);

@@ -34,7 +34,7 @@ pub(super) struct FlowFilterStages {
     finest: usize,
     images: Images,
     start: Start,
-    /// For each level, finest first; those of levels that are left out are never used.
+    /// For each level that is computed, finest first.
     of_level: Vec<LevelFlow>,
     mean: BufId,
     change: BufId,
@@ -59,11 +59,25 @@ enum Start {
 /// The flow of one level.
 struct LevelFlow {
     prediction: BufId,
-    /// The tables that average the finest computed level's prediction, and those for reading the coarser level's correction.
-    cover: Option<[BufId; 2]>,
-    place: Option<[BufId; 2]>,
-    corrected: BufId,
-    /// The result, except on the finest computed level.
+    /// What follows from the coarser level; `None` on the coarsest one.
+    corrected: Option<Corrected>,
+    /// Of a level coarser than the finest computed one.
+    coarse: Option<Coarse>,
+}
+
+/// A prediction corrected by the coarser level.
+#[derive(Clone, Copy)]
+struct Corrected {
+    /// The tables for reading the coarser level's correction.
+    place: [BufId; 2],
+    prediction: BufId,
+}
+
+/// The flow of a level coarser than the finest computed one.
+#[derive(Clone, Copy)]
+struct Coarse {
+    /// The tables that average the finest computed level's prediction.
+    cover: [BufId; 2],
     flow: BufId,
 }
 
@@ -76,7 +90,7 @@ impl FlowFilterStages {
         let confident = wanted.confidence || wanted.evidence;
         let radius = config.winsize as usize / 2;
         let window = tables::gauss(SIGMA * radius as f64, 2 * radius as u32 + 1);
-        let of_level = (0..levels.len()).map(|k| LevelFlow::new(bufs, &levels, finest, k)).collect();
+        let of_level = (finest..levels.len()).map(|k| LevelFlow::new(bufs, &levels, finest, k)).collect();
         let start = if wanted.initial_flow {
             let cover = [
                 bufs.constant("columns of the initial flow", tables::cover(size.width, own.width)),
@@ -90,7 +104,8 @@ impl FlowFilterStages {
         Self {
             gamma: config.gamma as f32,
             size,
-            images: Images::new(bufs, size, &levels, if confident { 0 } else { finest }, wanted),
+            // The confidence needs the full images, too.
+            images: Images::new(bufs, size, &levels, |k| k >= finest || confident && k == 0, wanted),
             start,
             of_level,
             mean: bufs.computed("mean of both images", one),
@@ -114,11 +129,16 @@ impl FlowFilterStages {
         }
     }
 
+    /// The flow of level `k`, which is computed.
+    fn level(&self, k: usize) -> &LevelFlow {
+        &self.of_level[k - self.finest]
+    }
+
     /// The step of the prediction on the finest computed level.
     fn predict(&self, steps: &mut Vec<Step>, parity: usize, initial: BufId) {
         let level = self.levels[self.finest];
         let Size { width, height } = level.size;
-        let output = [(self.of_level[self.finest].prediction, Shape::planar(level.size, 2))];
+        let output = [(self.level(self.finest).prediction, Shape::planar(level.size, 2))];
         steps.push(match &self.start {
             Start::State { state, backward } => {
                 let params = transport::Params { width, height, sense: if *backward { 1.0 } else { -1.0 } };
@@ -137,10 +157,11 @@ impl FlowFilterStages {
         let Size { width, height } = size;
         let [one, two, five] = [1, 2, 5].map(|channels| Shape::planar(size, channels));
         let label = format!("level {k}");
-        let own = &self.of_level[k];
+        let own = self.level(k);
         let mut begin = own.prediction;
-        if let (Some([place_x, place_y]), Some(coarser)) = (own.place, self.of_level.get(k + 1)) {
-            let of = self.levels[k + 1].size;
+        if let Some(Corrected { place: [place_x, place_y], prediction }) = own.corrected {
+            let (of, coarser) = (self.levels[k + 1].size, self.level(k + 1));
+            let Some(Coarse { flow: coarse, .. }) = coarser.coarse else { unreachable!("it is coarser") };
             steps.push(Step::new(
                 &correct::KERNEL,
                 label.clone(),
@@ -152,10 +173,10 @@ impl FlowFilterStages {
                     scale: 2.0,
                     threshold: THRESHOLD,
                 },
-                &[own.prediction, coarser.flow, coarser.prediction, place_x, place_y],
-                &[(own.corrected, two)],
+                &[own.prediction, coarse, coarser.prediction, place_x, place_y],
+                &[(prediction, two)],
             ));
-            begin = own.corrected;
+            begin = prediction;
         }
         steps.push(Step::new(
             &cubic_warp::KERNEL,
@@ -193,25 +214,23 @@ impl FlowFilterStages {
 impl LevelFlow {
     fn new(bufs: &mut Bufs, levels: &[Level], finest: usize, k: usize) -> Self {
         let (size, own) = (levels[k].size, levels[finest].size);
-        // Levels that are left out need no room.
-        let used = Shape::planar(if k < finest { Size::new(1, 1) } else { size }, 2);
-        let coarser = levels.get(k + 1).filter(|_| k >= finest).map(|level| level.size);
+        let two = Shape::planar(size, 2);
         Self {
-            prediction: bufs.computed(format!("prediction, level {k}"), used),
-            cover: (k > finest).then(|| {
-                [
-                    bufs.constant(format!("columns of the prediction, level {k}"), tables::cover(own.width, size.width)),
-                    bufs.constant(format!("rows of the prediction, level {k}"), tables::cover(own.height, size.height)),
-                ]
-            }),
-            place: coarser.map(|coarser| {
-                [
+            prediction: bufs.computed(format!("prediction, level {k}"), two),
+            corrected: levels.get(k + 1).map(|Level { size: coarser, .. }| Corrected {
+                place: [
                     bufs.constant(format!("columns of level {}", k + 1), tables::place(coarser.width, size.width)),
                     bufs.constant(format!("rows of level {}", k + 1), tables::place(coarser.height, size.height)),
-                ]
+                ],
+                prediction: bufs.computed(format!("corrected prediction, level {k}"), two),
             }),
-            corrected: bufs.computed(format!("corrected prediction, level {k}"), used),
-            flow: bufs.computed(format!("flow, level {k}"), used),
+            coarse: (k > finest).then(|| Coarse {
+                cover: [
+                    bufs.constant(format!("columns of the prediction, level {k}"), tables::cover(own.width, size.width)),
+                    bufs.constant(format!("rows of the prediction, level {k}"), tables::cover(own.height, size.height)),
+                ],
+                flow: bufs.computed(format!("flow, level {k}"), two),
+            }),
         }
     }
 }
@@ -241,16 +260,17 @@ impl Stages for FlowFilterStages {
         };
         for k in (self.finest..self.levels.len()).rev() {
             let level = self.levels[k];
-            if let Some([x, y]) = self.of_level[k].cover {
+            let own = self.level(k);
+            if let Some(Coarse { cover: [x, y], .. }) = own.coarse {
                 steps.push(Step::new(
                     &downsample_flow::KERNEL,
                     format!("level {k}"),
                     reduction(finest.size, level.size, level.scale / finest.scale),
-                    &[self.of_level[self.finest].prediction, x, y],
-                    &[(self.of_level[k].prediction, Shape::planar(level.size, 2))],
+                    &[self.level(self.finest).prediction, x, y],
+                    &[(own.prediction, Shape::planar(level.size, 2))],
                 ));
             }
-            let result = if k == self.finest { filtered } else { self.of_level[k].flow };
+            let result = own.coarse.map_or(filtered, |coarse| coarse.flow);
             self.update(&mut steps, k, slots.map(|slot| self.images.level(k, slot)), result);
         }
         let params = upsample::Params {

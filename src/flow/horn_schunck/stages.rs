@@ -40,11 +40,12 @@ impl HornSchunckStages {
         let levels = levels_down_to(size, config.pyr_scale, config.levels, f64::from(config.smallest));
         let [one, two, four, five] = [1, 2, 4, 5].map(|channels| Shape::planar(size, channels));
         let weight = (config.alpha * config.alpha) as f32;
+        let runs = config.warps * runs(config);
         Self {
             config: config.clone(),
             size,
-            images: Images::new(bufs, size, &levels, 0, wanted),
-            coarse_to_fine: CoarseToFine::new(bufs, &levels, config.pyr_scale, wanted, true),
+            images: Images::new(bufs, size, &levels, |_| true, wanted),
+            coarse_to_fine: CoarseToFine::new(bufs, &levels, config.pyr_scale, wanted, |_| runs),
             mean: bufs.computed("mean of both images", one),
             change: bufs.computed("change", one),
             share: bufs.computed("share that both images show", one),
@@ -61,14 +62,9 @@ impl HornSchunckStages {
         }
     }
 
-    /// Runs of [`sweep`] in a warp, each of which writes the flow.
-    fn runs(&self) -> u32 {
-        self.config.sweeps / sweep::SWEEPS
-    }
-
     fn iterate(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [LevelImage; 2]) {
         let size = iteration.level.size;
-        if (iteration.number - 1).is_multiple_of(self.runs()) {
+        if (iteration.number - 1).is_multiple_of(runs(&self.config)) {
             self.linearize(steps, iteration, pair);
         }
         steps.push(Step::new(
@@ -121,6 +117,11 @@ impl HornSchunckStages {
     }
 }
 
+/// Runs of [`sweep`] in a warp, each of which writes the flow.
+fn runs(config: &HornSchunck) -> u32 {
+    config.sweeps / sweep::SWEEPS
+}
+
 impl Stages for HornSchunckStages {
     fn ingest(&self, gray: BufId, certainty: Option<BufId>, slot: usize) -> Vec<Step> {
         self.images.steps(gray, certainty, slot)
@@ -128,7 +129,7 @@ impl Stages for HornSchunckStages {
 
     fn pair(&self, _parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
         let pair = |k: usize| slots.map(|slot| self.images.level(k, slot));
-        let iterations = self.config.warps * self.runs();
+        let iterations = self.config.warps * runs(&self.config);
         let mut steps = self.coarse_to_fine.steps(|_| iterations, initial, flow, |steps, iteration| {
             self.iterate(steps, &iteration, pair(iteration.k));
         });
