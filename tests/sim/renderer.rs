@@ -319,6 +319,17 @@ fn more_than_there_is_room_for_is_an_error_and_range_makes_room() {
 }
 
 #[test]
+fn the_smallest_images_show_a_whole_forest() {
+    let course = "forest".parse::<viewsphere::sim::CourseKind>().unwrap().course(0).unwrap();
+    assert!(course.world.surfaces.len() > 300);
+    let pose = flying([0.0, 0.0, -10.0], [0.0; 3]);
+    for size in [Size::new(1, 1), Size::new(8, 8), Size::new(40, 8)] {
+        let mut renderer = renderer(&Backend::Cpu, size, &course.world, &CLEAN);
+        assert_eq!(renderer.render(&pose, 0).unwrap().size, size);
+    }
+}
+
+#[test]
 fn a_lost_device_is_an_error() {
     let Some(shared) = need::gpu() else { return };
     let gpu = shared.reopen().unwrap();

@@ -15,6 +15,9 @@ const ENDLESS_M: f64 = 1e9;
 const CELL_M: f64 = 4.0;
 /// The average room per tile for members; a surface in one tile's list is one member.
 const MEMBERS_PER_TILE: usize = 128;
+/// The least room for members, the longest list that the kernel reads. A small image has few tiles, each of which may see the
+/// whole world.
+const LEAST_ROOM: usize = 1 << 14;
 
 /// The tiles of an image, and their ranges of x/z and y/z.
 pub(super) struct Tiles {
@@ -122,7 +125,8 @@ impl VisibleSurfaces {
 
     /// The length of the `members` buffer.
     pub(super) fn most_members(tiles: &Tiles, world: &World) -> usize {
-        (tiles.count() * world.surfaces.len().min(MEMBERS_PER_TILE)).max(1)
+        let room = (tiles.count() * MEMBERS_PER_TILE).max(LEAST_ROOM);
+        room.min(tiles.count() * world.surfaces.len()).max(1)
     }
 
     /// Fills the buffers for a pose.
@@ -148,7 +152,12 @@ impl VisibleSurfaces {
         let most = Self::most_members(tiles, world);
         if first > most {
             let found = format!("one of whose surfaces the image's tiles see {first} in total");
-            return Err(Error::parameter("world", found, format_args!("at most {most}")));
+            let expected = format_args!(
+                "at most {most}, which is {MEMBERS_PER_TILE} for each tile of {} × {} pixels: a larger image, or a world \
+                 with fewer surfaces",
+                TILE[0], TILE[1]
+            );
+            return Err(Error::parameter("world", found, expected));
         }
         self.members.clear();
         self.members.resize(first, 0.0);
