@@ -26,6 +26,12 @@ impl Size {
         self.width as usize * self.height as usize
     }
 
+    /// Whether a point `[x, y]` in pixels lies between the centres of the image's pixels, those included. NaN does not.
+    pub fn contains(self, [x, y]: [f32; 2]) -> bool {
+        let within = |at: f32, side: u32| at >= 0.0 && at <= side as f32 - 1.0;
+        within(x, self.width) && within(y, self.height)
+    }
+
     /// Width of a row of a computed plane: [`Size::width`] rounded up to a multiple of 4.
     pub const fn stride(self) -> usize {
         (self.width as usize).next_multiple_of(4)

@@ -45,7 +45,7 @@ pub enum Class {
     Thin,
     /// Neither thin nor near a depth edge.
     Calm,
-    /// The depth is infinite.
+    /// The depth is infinite. Sky that leaves the frame is in no class.
     Sky,
 }
 
@@ -166,9 +166,8 @@ impl Classes {
 
 /// Whether the flow of a pixel leads to a place between the centres of an image's pixels.
 fn is_inside(pixel: usize, [u, v]: [f32; 2], size: Size) -> bool {
-    let (width, height) = (size.width as usize, size.height as usize);
-    let within = |at: usize, by: f32, count: usize| (0.0..=(count - 1) as f32).contains(&(at as f32 + by));
-    within(pixel % width, u, width) && within(pixel / width, v, height)
+    let width = size.width as usize;
+    size.contains([(pixel % width) as f32 + u, (pixel / width) as f32 + v])
 }
 
 #[cfg(test)]

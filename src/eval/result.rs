@@ -60,22 +60,23 @@ impl Job {
 
     /// The order of jobs: by set and pair, then by [`Job::run_order`].
     pub fn order(&self, other: &Self) -> Ordering {
-        let place = |job: &Self| (job.set.clone(), job.pair.clone());
-        place(self).cmp(&place(other)).then_with(|| self.run_order(other))
+        (&self.set, &self.pair).cmp(&(&other.set, &other.pair)).then_with(|| self.run_order(other))
     }
 
     /// The order of runs in a table: by algorithm and preset, as they are listed in [`Algorithm`], then by parameters and
     /// backend.
     pub fn run_order(&self, other: &Self) -> Ordering {
-        let place = |job: &Self| {
-            let mut parts = job.run.split(':');
-            let (name, preset) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
-            let at = |list: &[(&str, &str)], name: &str| list.iter().position(|(known, _)| *known == name);
-            let presets = Algorithm::named(name, "default").map_or(&[][..], |algorithm| algorithm.presets());
-            let rank = |at: Option<usize>| at.unwrap_or(usize::MAX);
-            (rank(at(Algorithm::ALL, name)), rank(at(presets, preset)), job.run.clone(), job.backend.clone())
-        };
-        place(self).cmp(&place(other))
+        self.run_place().cmp(&other.run_place())
+    }
+
+    /// What decides its run's place in a table.
+    fn run_place(&self) -> (usize, usize, &str, &str) {
+        let mut parts = self.run.split(':');
+        let (name, preset) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+        let at = |list: &[(&str, &str)], name: &str| list.iter().position(|(known, _)| *known == name);
+        let presets = Algorithm::named(name, "default").map_or(&[][..], |algorithm| algorithm.presets());
+        let rank = |at: Option<usize>| at.unwrap_or(usize::MAX);
+        (rank(at(Algorithm::ALL, name)), rank(at(presets, preset)), &self.run, &self.backend)
     }
 }
 
@@ -85,6 +86,14 @@ impl PairResult {
         match &self.ended {
             Ended::Scored { score, .. } => Some(score),
             Ended::Failed(_) => None,
+        }
+    }
+
+    /// Why it failed, if it did.
+    pub fn failure(&self) -> Option<&str> {
+        match &self.ended {
+            Ended::Scored { .. } => None,
+            Ended::Failed(reason) => Some(reason),
         }
     }
 

@@ -51,6 +51,25 @@ pub fn read(path: impl AsRef<Path>) -> Result<Image> {
     decode(path.as_ref(), &read_file(path.as_ref())?)
 }
 
+/// Reads two images of one size and pixel format.
+///
+/// # Errors
+/// As [`read`]; [`Error::Format`] naming both if the second one's size or format differs from the first one's.
+pub fn read_pair(first: impl AsRef<Path>, second: impl AsRef<Path>) -> Result<[Image; 2]> {
+    let (first, second) = (first.as_ref(), second.as_ref());
+    let images = [read(first)?, read(second)?];
+    let [one, two] = &images;
+    if two.size != one.size {
+        let expected = format_args!("{} as in {}", one.size, first.display());
+        return Err(Error::format(second, "size", two.size, expected));
+    }
+    if two.format != one.format {
+        let expected = format_args!("{} as in {}", one.format, first.display());
+        return Err(Error::format(second, "pixel format", two.format, expected));
+    }
+    Ok(images)
+}
+
 /// Encodes a PNG file, in the image's own pixel format.
 ///
 /// # Errors

@@ -32,17 +32,12 @@ impl PairFiles {
             }
         }
         let [one, two] = &self.frames;
-        let frames = [picture::read(one)?, picture::read(two)?];
+        let frames = picture::read_pair(one, two)?;
         let size = frames[0].size;
         let same = |path: &Path, found: Size| match found == size {
             true => Ok(()),
             false => Err(Error::format(path, "size", found, format_args!("{size} as in {}", one.display()))),
         };
-        same(two, frames[1].size)?;
-        if frames[0].format != frames[1].format {
-            let expected = format!("{} as in {}", frames[0].format, one.display());
-            return Err(Error::format(two, "pixel format", frames[1].format, expected));
-        }
         let field = |path: &Path| -> Result<FlowField> {
             let flow = read_flow(path)?;
             same(path, flow.size).map(|()| flow)

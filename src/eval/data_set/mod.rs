@@ -22,6 +22,7 @@ mod single;
 mod sintel;
 mod yosemite;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 pub use kind::Kind;
@@ -47,7 +48,7 @@ pub struct DataSet {
 /// Finds the data sets in a folder: the folder itself, or folders inside it. With a `kind` only those of that kind.
 ///
 /// # Errors
-/// [`Error::Io`] for a folder that cannot be read; [`Error::Format`] if there is no data set.
+/// [`Error::Io`] for a folder that cannot be read; [`Error::Format`] if there is no data set, and for two pairs of one name.
 pub fn find(folder: &Path, kind: Option<Kind>) -> Result<Vec<DataSet>> {
     let found = search(folder, kind, DEPTH)?;
     if found.is_empty() {
@@ -62,6 +63,11 @@ fn search(folder: &Path, kind: Option<Kind>, depth: u32) -> Result<Vec<DataSet>>
     for known in Kind::ALL.into_iter().filter(|known| kind.is_none_or(|kind| kind == *known)) {
         let pairs = known.pairs(folder)?;
         if !pairs.is_empty() {
+            let mut names = BTreeSet::new();
+            if let Some(twice) = pairs.iter().find(|pair| !names.insert(&pair.name)) {
+                let found = format!("two pairs named {}", twice.name);
+                return Err(Error::format(folder, "data set", found, "pairs with different names"));
+            }
             return Ok(vec![DataSet { name: name(folder), kind: known, pairs }]);
         }
     }
@@ -172,6 +178,22 @@ pub(crate) mod tests {
         assert_eq!(names(&find(at, None).unwrap()), expected);
         let kitti = names(&find(at, Some(Kind::Kitti)).unwrap());
         assert_eq!(kitti, ["k12 kitti: 000003", "k15 kitti: 000001"]);
+    }
+
+    #[test]
+    fn every_pair_of_a_sequence_has_one_truth() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = ["yos07.png", "yos08.png", "yos09.png", "yos10.png"];
+        touch(folder.path(), &[&frames[..], &["flow08.flo", "flow09.flo"]].concat());
+        let sets = find(folder.path(), None).unwrap();
+        let mut pairs: Vec<(&str, String)> =
+            sets[0].pairs.iter().map(|pair| (pair.name.as_str(), listing::name(&pair.flow))).collect();
+        pairs.sort();
+        let of = |name, flow: &str| (name, flow.to_owned());
+        assert_eq!(pairs, [of("7-8", "flow08.flo"), of("8-9", "flow08.flo"), of("9-10", "flow09.flo")]);
+        touch(folder.path(), &["derived_yos08.png", "derived_yos09.png", "derived_flow08.flo"]);
+        let error = find(folder.path(), None).unwrap_err().to_string();
+        assert!(error.contains("two pairs named 8-9"), "{error}");
     }
 
     #[test]
