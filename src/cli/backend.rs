@@ -30,13 +30,8 @@ pub(super) enum BackendArg {
 }
 
 impl BackendArgs {
-    /// Opens the backend and names it on standard error.
-    pub(super) fn open(&self) -> Result<Backend> {
-        self.open_unless(false)
-    }
-
-    /// Like [`open`](Self::open), but silent if `quiet`.
-    pub(super) fn open_unless(&self, quiet: bool) -> Result<Backend> {
+    /// Opens the backend and names it on standard error, unless `quiet`.
+    pub(super) fn open(&self, quiet: bool) -> Result<Backend> {
         self.open_with(&options(), quiet)
     }
 
@@ -54,7 +49,7 @@ impl BackendArgs {
     /// Opens two backends of the same kind on separate devices, so that the loss of one device does not affect the
     /// other.
     pub(super) fn open_pair(&self, quiet: bool) -> Result<[Backend; 2]> {
-        let first = self.open_unless(quiet)?;
+        let first = self.open(quiet)?;
         let second = self.open_like(&first)?;
         Ok([first, second])
     }

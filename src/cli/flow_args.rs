@@ -1,10 +1,13 @@
 //! The flags of every command that computes flow: the algorithm, a preset, and the parameters of all algorithms,
 //! generated from the estimators' own lists.
 
+use std::sync::LazyLock;
+
 use clap::builder::PossibleValue;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
+use super::args::named_by_flags;
 use crate::error::{Error, Result};
 use crate::flow::{Algorithm, Choice, Parameter};
 
@@ -28,13 +31,21 @@ struct Shared {
     of: Vec<(&'static str, String)>,
 }
 
+/// The flags by the names of parameters. The flags' texts live as long as the program.
+static FLAGS: LazyLock<Vec<(&'static str, &'static str)>> = LazyLock::new(|| {
+    let names = shared().into_iter().map(|shared| shared.parameter.name);
+    let all = names.chain(["preset", "algorithm"]);
+    all.map(|name| (name, &*format!("--{}", flag(name)).leak())).collect()
+});
+
 impl FlowArgs {
     /// The algorithm with its parameters, validated.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a preset or a parameter that the algorithm does not have, and for values out of range.
     pub(super) fn algorithm(&self) -> Result<Algorithm> {
-        self.with_parameters(Algorithm::named(&self.algorithm, &self.preset)?)
+        let algorithm = Algorithm::named(&self.algorithm, &self.preset);
+        self.with_parameters(algorithm.map_err(|error| named_by_flags(error, &FLAGS))?)
     }
 
     /// The same for a command whose default is `own`: its parameters, unless an algorithm or a preset is given.
@@ -54,9 +65,9 @@ impl FlowArgs {
                 let expected = format_args!("one of {}'s: --{}", algorithm.name(), names.join(", --"));
                 return Err(Error::parameter("flow parameter", found, expected));
             }
-            algorithm.set(name, value)?;
+            algorithm.set(name, value).map_err(|error| named_by_flags(error, &FLAGS))?;
         }
-        algorithm.validate()?;
+        algorithm.validate().map_err(|error| named_by_flags(error, &FLAGS))?;
         Ok(algorithm)
     }
 }
@@ -82,15 +93,10 @@ impl FromArgMatches for FlowArgs {
 
 impl Args for FlowArgs {
     fn augment_args(command: Command) -> Command {
-        let mut presets: Vec<PossibleValue> = Vec::new();
-        for (name, help, of) in all_presets() {
-            let only = if of.len() == Algorithm::ALL.len() {
-                String::new()
-            } else {
-                format!(" ({} only)", of.join(", "))
-            };
-            presets.push(PossibleValue::new(name).help(format!("{help}{only}")));
-        }
+        let preset = |(name, meanings): (&'static str, Vec<Meaning<'_>>)| {
+            PossibleValue::new(name).help(told(&meanings))
+        };
+        let presets: Vec<PossibleValue> = presets().into_iter().map(preset).collect();
         let command = command
             .next_help_heading(HEADING)
             .arg(
@@ -108,8 +114,8 @@ impl Args for FlowArgs {
                     .value_parser(presets)
                     .default_value(DEFAULT_PRESET)
                     .help(
-                        "Set of parameters; the flags below override single ones, and their defaults are those of the \
-                         preset default",
+                        "Set of parameters of the algorithm; the flags below override single ones, and their defaults are \
+                         those of the preset default",
                     ),
             );
         shared().into_iter().fold(command, |command, shared| command.arg(shared.arg()))
@@ -123,41 +129,36 @@ impl Args for FlowArgs {
 impl Shared {
     fn arg(self) -> Arg {
         let Self { parameter, of } = self;
-        let mut defaults: Vec<String> = Vec::new();
-        for (algorithm, value) in &of {
-            let all_alike = of.iter().all(|(_, other)| other == value);
-            defaults.push(if all_alike { value.clone() } else { format!("{value} of {algorithm}") });
-        }
-        defaults.dedup();
+        let mut by_value: Vec<(&str, Vec<&str>)> = Vec::new();
+        of.iter().for_each(|(algorithm, value)| add(&mut by_value, algorithm, value));
+        let defaults = match by_value.as_slice() {
+            [(value, _)] => (*value).to_owned(),
+            several => {
+                let each = several.iter().map(|(value, of)| format!("{value} of {}", listed(of)));
+                each.collect::<Vec<_>>().join("; ")
+            }
+        };
         let only = match of.len() == Algorithm::ALL.len() {
             true => String::new(),
-            false => format!(", of {}", of.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" and ")),
+            false => format!(", of {}", listed(&of.iter().map(|(name, _)| *name).collect::<Vec<_>>())),
         };
         // Estimators may mean different things by a name.
-        let mut helps: Vec<(&str, Vec<&str>)> = Vec::new();
+        let mut meanings: Vec<Meaning<'_>> = Vec::new();
         for (algorithm, _) in &of {
             let known = Algorithm::named(algorithm, DEFAULT_PRESET)
                 .ok()
                 .and_then(|algorithm| help(&algorithm, parameter.name));
-            let own = known.unwrap_or(parameter.help);
-            match helps.iter_mut().find(|(help, _)| *help == own) {
-                Some((_, algorithms)) => algorithms.push(algorithm),
-                None => helps.push((own, vec![algorithm])),
-            }
+            add(&mut meanings, algorithm, known.unwrap_or(parameter.help));
         }
-        let help = match helps.as_slice() {
+        let help = match meanings.as_slice() {
             [(help, _)] => format!("{help}{only}"),
-            several => {
-                let each =
-                    several.iter().map(|(help, algorithms)| format!("{}: {help}", algorithms.join(" and ")));
-                each.collect::<Vec<_>>().join(". ")
-            }
+            several => told(several),
         };
         let arg = Arg::new(parameter.name)
             .long(flag(parameter.name))
             .value_name(parameter.value_name)
             .allow_negative_numbers(true)
-            .help(format!("{help} [default: {}]", defaults.join(", ")));
+            .help(format!("{help} [default: {defaults}]"));
         match parameter.choices {
             [] => arg.value_parser(move |text: &str| legible(parameter.name, text)),
             choices => arg.value_parser(values(choices)).allow_negative_numbers(false),
@@ -168,7 +169,10 @@ impl Shared {
 /// Accepts `text` if it parses as a value of the parameter. Ranges are checked once the algorithm is known.
 fn legible(name: &str, text: &str) -> Result<String> {
     match algorithms().find(|algorithm| algorithm.get(name).is_some()) {
-        Some(mut algorithm) => algorithm.set(name, text).map(|()| text.to_owned()),
+        Some(mut algorithm) => {
+            let set = algorithm.set(name, text).map_err(|error| named_by_flags(error, &FLAGS));
+            set.map(|()| text.to_owned())
+        }
         None => Ok(text.to_owned()),
     }
 }
@@ -207,15 +211,41 @@ fn shared() -> Vec<Shared> {
     all
 }
 
-/// The presets of all algorithms, each once, with the algorithms that have it.
-fn all_presets() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
-    let mut all: Vec<(&'static str, &'static str, Vec<&'static str>)> = Vec::new();
+/// What a name means, and the algorithms with which it does.
+type Meaning<'a> = (&'a str, Vec<&'a str>);
+
+/// Adds an algorithm to those with a meaning.
+fn add<'a>(meanings: &mut Vec<Meaning<'a>>, algorithm: &'a str, own: &'a str) {
+    match meanings.iter_mut().find(|(meaning, _)| *meaning == own) {
+        Some((_, algorithms)) => algorithms.push(algorithm),
+        None => meanings.push((own, vec![algorithm])),
+    }
+}
+
+/// The meanings as text, each with its algorithms.
+fn told(meanings: &[Meaning<'_>]) -> String {
+    let each = meanings.iter().map(|(meaning, algorithms)| format!("{}: {meaning}", listed(algorithms)));
+    each.collect::<Vec<_>>().join(". ")
+}
+
+/// Names as a list in a sentence.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// The presets of all algorithms, each once, with their meanings.
+fn presets() -> Vec<(&'static str, Vec<Meaning<'static>>)> {
+    let mut all: Vec<(&'static str, Vec<Meaning<'static>>)> = Vec::new();
     for algorithm in algorithms() {
         for (name, help) in algorithm.presets() {
-            match all.iter_mut().find(|(known, ..)| known == name) {
-                Some((.., of)) => of.push(algorithm.name()),
-                None => all.push((name, help, vec![algorithm.name()])),
+            if !all.iter().any(|(known, _)| known == name) {
+                all.push((name, Vec::new()));
             }
+            let of_name = all.iter_mut().find(|(known, _)| known == name);
+            of_name.into_iter().for_each(|(_, meanings)| add(meanings, algorithm.name(), help));
         }
     }
     all
@@ -263,6 +293,27 @@ mod tests {
         assert_eq!(algorithm.get("poly_n").unwrap(), "7");
         assert_eq!(algorithm.get("iterations").unwrap(), "10");
         let error = parsed(&["--levels", "99"]).algorithm().unwrap_err();
-        assert_eq!(error.to_string(), "levels is 99, expected 0 to 32");
+        assert_eq!(error.to_string(), "--levels is 99, expected 0 to 32");
+        let error = parsed(&["--pyr-scale", "9"]).algorithm().unwrap_err();
+        assert_eq!(error.to_string(), "--pyr-scale is 9, expected a number above 0 and below 1");
+        let error = parsed(&["--preset", "best"]).algorithm().unwrap_err().to_string();
+        let words = "--preset is \"best\" with farneback, expected fast, ";
+        assert!(
+            error.starts_with(words) && error.ends_with(", or the algorithm farneback-tv, which has it"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn the_help_tells_every_algorithms_presets() {
+        let told: Vec<(&str, String)> =
+            presets().iter().map(|(name, meanings)| (*name, told(meanings))).collect();
+        for algorithm in algorithms() {
+            for (name, help) in algorithm.presets() {
+                let (_, text) = told.iter().find(|(known, _)| known == name).unwrap();
+                let own = text.split(". ").find(|part| part.contains(algorithm.name())).unwrap();
+                assert!(own.ends_with(help), "{name}: {text}");
+            }
+        }
     }
 }

@@ -48,41 +48,6 @@ pub(super) fn within<T>(folder: &Path, act: impl FnOnce() -> Result<T>) -> Resul
     })
 }
 
-/// Checks that no input is overwritten: that no result is one of these files, or lies in the folder of one. Inputs
-/// that do not exist, and `-`, are skipped.
-pub(super) fn spared<'a>(
-    flag: &'static str,
-    result: Option<&Path>,
-    inputs: impl IntoIterator<Item = &'a Path>,
-) -> Result<()> {
-    let found = result.and_then(|path| Some((path, path.canonicalize().ok()?)));
-    let Some((given, result)) = found else { return Ok(()) };
-    for input in inputs {
-        let folder =
-            input.parent().map(|parent| if parent == Path::new("") { Path::new(".") } else { parent });
-        let beside = folder.filter(|_| result.is_dir()).and_then(|folder| folder.canonicalize().ok());
-        if input.canonicalize().is_ok_and(|input| input == result)
-            || beside.is_some_and(|beside| beside == result)
-        {
-            let expected = format!("a path other than that of the input {}", input.display());
-            return Err(Error::parameter(flag, given.display(), expected));
-        }
-    }
-    Ok(())
-}
-
-/// Reads two images of the same size and pixel format.
-pub(super) fn pair(a: &Path, b: &Path) -> Result<[Image; 2]> {
-    let first = picture::read(a)?;
-    let second = picture::read(b)?;
-    same_size(b, second.size, first.size, a)?;
-    if second.format != first.format {
-        let expected = format!("{} as in {}", first.format, a.display());
-        return Err(Error::format(b, "pixel format", second.format, expected));
-    }
-    Ok([first, second])
-}
-
 /// Reads a mask or certainty of 0 to 1: an image, black to white, or a plane in a `.npy` file. Its size must be
 /// `size`, that of `other`.
 pub(super) fn plane(path: &Path, size: Size, other: &Path) -> Result<Plane> {

@@ -18,6 +18,8 @@ mod flow;
 mod flow_args;
 mod fly;
 mod input;
+mod paths;
+mod place;
 mod print;
 mod progress;
 mod run;
@@ -54,7 +56,10 @@ Examples:
   viewsphere fly --world forest --seed 7             through a simulated world, steered by what the view says
   viewsphere campaign --worlds wall,city --seeds 0..100    how often the goal is reached
   viewsphere eval --data middlebury/                 the errors of every algorithm
-  viewsphere devices                                 the GPU adapters and the CPU"
+  viewsphere devices                                 the GPU adapters and the CPU
+
+A result replaces a file of its name. Files whose names a command chooses itself, in a folder given with -o, replace only those of
+an earlier run of that command."
 )]
 struct Cli {
     #[command(subcommand)]

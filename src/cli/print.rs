@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::journal::Shard;
 
 /// Writes bytes to standard output.
 ///
@@ -56,6 +57,18 @@ fn to_json(text: serde_json::Result<String>) -> Result<String> {
 pub(super) fn note(text: impl std::fmt::Display) {
     let line = text.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(io::stderr(), "viewsphere: {line}");
+}
+
+/// What to know about a pair that is computed without those before it, by an algorithm that has memory.
+pub(super) fn alone(run: &str) -> String {
+    format!(
+        "{run} corrects the flow of earlier pairs, and warms up over about 20 of them: a pair alone has more error"
+    )
+}
+
+/// Says that a shard of this many jobs (such as "3 pairs") has none.
+pub(super) fn empty_shard(shard: Shard, all: String) {
+    note(format_args!("shard {shard} of {all} is empty: there are more shards than that; nothing is run"));
 }
 
 /// Rows of cells as columns of even width: the first one left-aligned, the others right-aligned.

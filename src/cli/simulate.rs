@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::args::{named_by_flags, whole};
 use super::backend::BackendArgs;
-use super::{Outcome, input, print};
+use super::progress::Progress;
+use super::{Outcome, input, paths, print};
 use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::io;
@@ -135,12 +135,15 @@ impl Simulate {
         config.validate().map_err(named)?;
         self.warn(&config, camera.size);
         input::not_standard_output(&self.output)?;
+        if let Some(path) = self.camera.as_ref().filter(|_| self.force) {
+            paths::is_outside("--camera", path, &self.output)?;
+        }
         let existing = if self.force { Existing::Replace } else { Existing::Refuse };
         let writer = DataSetWriter::new(&self.output, existing, &course, &camera, &config).map_err(named)?;
-        let backend = self.backend.open_unless(self.quiet)?;
-        let bar = if self.quiet { ProgressBar::hidden() } else { progress(writer.frames()) };
-        let written = writer.write(backend, |frames| bar.set_position(frames as u64));
-        bar.finish_and_clear();
+        let backend = self.backend.open(self.quiet)?;
+        let progress = Progress::new(Some(writer.frames() as u64), "frames", self.quiet);
+        let written = writer.write(backend, |frames| progress.set(frames as u64));
+        progress.finish();
         self.say(&course.name, &config, &written.map_err(named)?)?;
         Ok(Outcome::Done)
     }
@@ -276,12 +279,6 @@ impl ValueEnum for Truth {
         };
         Some(PossibleValue::new(self.name()).help(about))
     }
-}
-
-/// A progress bar on standard error, where that is a terminal.
-fn progress(frames: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} frames, {per_sec}, {eta} left");
-    ProgressBar::new(frames as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 /// The command line as typed, quoted so that it can be repeated.

@@ -11,7 +11,6 @@ mod confidence_score;
 pub mod data_set;
 mod estimate;
 mod metrics;
-mod processor_time;
 #[cfg(all(feature = "io", feature = "serde"))]
 mod result;
 mod roc;

@@ -1,5 +1,6 @@
 //! An algorithm with its parameters, as text.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::str::FromStr;
 
@@ -31,6 +32,27 @@ impl RunSpec {
         Algorithm::ALL.iter().filter_map(|(name, _)| Self::new(name, DEFAULT).ok()).collect()
     }
 
+    /// These presets of every algorithm that has one of them, without those that equal an earlier one. A preset `all` stands
+    /// for all presets.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a preset that no algorithm has.
+    pub fn with_presets(presets: &[String]) -> Result<Vec<Self>> {
+        let has_one = |name: &str| {
+            presets.iter().any(|preset| preset == "all" || Algorithm::with_preset(preset).contains(&name))
+        };
+        let names = Algorithm::ALL.iter().map(|(name, _)| *name);
+        match presets.iter().find(|preset| *preset != "all" && Algorithm::with_preset(preset).is_empty()) {
+            Some(preset) => {
+                Err(Error::parameter("preset", format!("{preset:?}"), "a preset of an algorithm"))
+            }
+            None => {
+                let names: Vec<String> = names.filter(|name| has_one(name)).map(str::to_owned).collect();
+                Self::combinations(&names, presets)
+            }
+        }
+    }
+
     /// Every combination of these algorithms and presets that exists, without those that equal an earlier one. A preset
     /// `all` stands for all presets of an algorithm.
     ///
@@ -46,11 +68,8 @@ impl RunSpec {
             let chosen: Vec<&str> = known.iter().copied().filter(|preset| is_asked(preset)).collect();
             if chosen.is_empty() {
                 let found = format!("{} with {name}", presets.join(","));
-                return Err(Error::parameter(
-                    "preset",
-                    found,
-                    format!("at least one of {}", known.join(", ")),
-                ));
+                let expected = format!("at least one of {}", known.join(", "));
+                return Err(Error::parameter("preset", found, expected));
             }
             unused.retain(|preset| !known.contains(&preset.as_str()));
             for preset in chosen {
@@ -104,12 +123,20 @@ impl FromStr for RunSpec {
             }
         }
         let mut run = Self::new(name, preset)?;
+        let mut given = BTreeSet::new();
         for (name, value) in parameters {
             let name = name.replace('-', "_");
             run.algorithm.set(&name, value)?;
-            run.label += &format!(":{name}={value}");
+            if !given.insert(name) {
+                return Err(Error::parameter("run", format_args!("{text:?}"), "each parameter once"));
+            }
         }
         run.algorithm.validate()?;
+        // One order and one way of writing numbers, so that equal runs have equal names.
+        for parameter in run.algorithm.parameters().iter().filter(|known| given.contains(known.name)) {
+            let value = run.algorithm.get(parameter.name).unwrap_or_default();
+            run.label += &format!(":{}={value}", parameter.name);
+        }
         Ok(run)
     }
 }
@@ -133,6 +160,23 @@ mod tests {
         assert_eq!(run.algorithm().get("spacing").unwrap(), "2");
         assert_eq!("farneback".parse::<RunSpec>().unwrap().label(), "farneback:default");
         assert_eq!("farneback:poly-n=7".parse::<RunSpec>().unwrap().label(), "farneback:default:poly_n=7");
+        let other: RunSpec = "farneback:poly-n=07:levels=2".parse().unwrap();
+        assert_eq!(other.label(), "farneback:default:levels=2:poly_n=7");
+    }
+
+    #[test]
+    fn a_preset_without_an_algorithm_is_that_of_those_that_have_it() {
+        let names = |presets: &[&str]| {
+            let owned: Vec<String> = presets.iter().map(|preset| (*preset).to_owned()).collect();
+            let runs = RunSpec::with_presets(&owned)?;
+            Ok::<_, Error>(runs.iter().map(RunSpec::to_string).collect::<Vec<_>>())
+        };
+        assert_eq!(names(&["affine"]).unwrap(), ["farneback:affine"]);
+        assert_eq!(names(&["best", "affine"]).unwrap(), ["farneback:affine", "farneback-tv:best"]);
+        assert_eq!(names(&["default"]).unwrap().len(), Algorithm::ALL.len());
+        assert!(names(&["all"]).unwrap().len() > Algorithm::ALL.len());
+        let error = names(&["affine", "affineish"]).unwrap_err().to_string();
+        assert_eq!(error, "preset is \"affineish\", expected a preset of an algorithm");
     }
 
     #[test]
@@ -144,6 +188,7 @@ mod tests {
             ("farneback:poly_n=x", ["poly_n", "x"]),
             ("farneback:poly_m=5", ["parameter", "poly_m"]),
             ("farneback:poly_n=99", ["poly_n", "99"]),
+            ("farneback:poly_n=5:poly-n=7", ["run", "each parameter once"]),
             ("", ["algorithm", "\"\""]),
         ] {
             let error = text.parse::<RunSpec>().unwrap_err().to_string();

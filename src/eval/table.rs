@@ -1,5 +1,7 @@
 //! Results added up: for each pair, for each data set, and in total.
 
+use std::collections::HashMap;
+
 use super::{Class, Job, PairResult, PairTime, Score};
 
 /// The results of some jobs, added up.
@@ -7,8 +9,8 @@ use super::{Class, Job, PairResult, PairTime, Score};
 pub struct Table {
     /// What computed the flow.
     pub adapters: Vec<String>,
-    /// The run with which others are compared.
-    pub baseline: String,
+    /// The run with which others are compared; `None` without results.
+    pub baseline: Option<String>,
     /// One row for each pair and run.
     pub pairs: Vec<Row>,
     /// One row for each data set and run, over the set's pairs.
@@ -34,6 +36,8 @@ pub struct Row {
     pub scored: usize,
     /// The pairs that failed; no figure counts them.
     pub failed: usize,
+    /// Why the row's pair failed; `None` if it did not, and for several pairs.
+    pub reason: Option<String>,
     /// The errors over the pixels of all pairs.
     pub score: Score,
     /// The mean of the pairs' times; `None` if one was not measured.
@@ -64,17 +68,26 @@ impl Table {
         adapters.sort();
         adapters.dedup();
         let first = sorted.iter().map(|result| &result.job).min_by(|a, b| a.run_order(b));
-        let first = first.map_or_else(String::new, |job| job.run.clone());
-        let baseline = baseline.map_or(first, str::to_owned);
+        let baseline = baseline.or(first.map(|job| job.run.as_str())).filter(|_| !sorted.is_empty());
+        let baseline = baseline.map(str::to_owned);
         let one_backend = sorted.iter().all(|result| result.job.backend == sorted[0].job.backend);
+        let is_base = |result: &&&PairResult| Some(result.job.run.as_str()) == baseline.as_deref();
+        let bases = sorted.iter().filter(is_base).filter(|result| result.score().is_some());
+        let bases: Bases<'_> = bases.map(|result| (place(&result.job), *result)).collect();
+        // A table can have many thousand results, but few runs.
+        let mut runs: Vec<&Job> = sorted.iter().map(|result| &result.job).collect();
+        runs.sort_by_key(|job| (&job.run, &job.backend));
+        runs.dedup_by_key(|job| (&job.run, &job.backend));
+        runs.sort_by(|a, b| a.run_order(b));
+        let ranks: HashMap<(&str, &str), usize> = runs.iter().map(|job| run(job)).zip(0..).collect();
         let rows = |results: &[&PairResult], set: Option<&str>, pair: Option<&str>| {
             let mut by_run = results.to_vec();
-            by_run.sort_by(|a, b| a.job.run_order(&b.job));
-            let runs = by_run.chunk_by(|a, b| a.job.run_order(&b.job).is_eq());
+            by_run.sort_by_key(|result| ranks.get(&run(&result.job)));
+            let runs = by_run.chunk_by(|a, b| run(&a.job) == run(&b.job));
             runs.map(|own| {
                 let Job { run, backend, .. } = &own[0].job;
                 let name = if one_backend { run.clone() } else { format!("{run} on {backend}") };
-                Row { name, ..Row::of(own, results, &baseline, set, pair) }
+                Row { name, ..Row::of(own, &bases, set, pair) }
             })
             .collect::<Vec<_>>()
         };
@@ -91,28 +104,26 @@ impl Table {
     }
 }
 
+/// The scored results of the baseline, by data set, pair and backend.
+type Bases<'a> = HashMap<[&'a str; 3], &'a PairResult>;
+
+fn place(job: &Job) -> [&str; 3] {
+    [&job.set, &job.pair, &job.backend]
+}
+
+fn run(job: &Job) -> (&str, &str) {
+    (&job.run, &job.backend)
+}
+
 impl Row {
-    /// The row of one run's results, of which there is at least one, among those of all runs on the same pairs.
-    fn of(
-        own: &[&PairResult],
-        all: &[&PairResult],
-        baseline: &str,
-        set: Option<&str>,
-        pair: Option<&str>,
-    ) -> Self {
+    /// The row of one run's results, of which there is at least one.
+    fn of(own: &[&PairResult], bases: &Bases<'_>, set: Option<&str>, pair: Option<&str>) -> Self {
         let job = &own[0].job;
         let scored: Vec<(&PairResult, &Score)> =
             own.iter().filter_map(|result| Some((*result, result.score()?))).collect();
         let mut sum = Score::default();
         scored.iter().for_each(|(_, score)| sum.merge(score));
-        let base = |of: &PairResult| {
-            let is_base = |result: &&&PairResult| {
-                let job = &result.job;
-                (&job.set, &job.pair, &job.backend) == (&of.job.set, &of.job.pair, &of.job.backend)
-                    && job.run == baseline
-            };
-            all.iter().find(is_base).copied().filter(|result| result.score().is_some())
-        };
+        let base = |of: &PairResult| bases.get(&place(&of.job)).copied();
         let couples: Vec<[&PairResult; 2]> =
             scored.iter().filter_map(|(result, _)| Some([*result, base(result)?])).collect();
         let mean = |figure: &dyn Fn(&PairResult) -> Option<f64>| geometric_mean(&couples, figure);
@@ -125,6 +136,7 @@ impl Row {
             backend: job.backend.clone(),
             scored: scored.len(),
             failed: own.len() - scored.len(),
+            reason: own[0].failure().filter(|_| pair.is_some()).map(str::to_owned),
             time: mean_time(&scored.iter().map(|(result, _)| result.time()).collect::<Vec<_>>()),
             ratios: Ratios {
                 aee: mean(&|result| Some(all_pixels(result)?.aee_px)),
@@ -172,7 +184,10 @@ mod tests {
             failed("b", "1", "farneback-tv:fast"),
         ];
         let table = Table::of(&all.iter().collect::<Vec<_>>(), None);
-        assert_eq!(table.baseline, "farneback:default");
+        assert_eq!(table.baseline.as_deref(), Some("farneback:default"));
+        let reasons: Vec<_> = table.pairs.iter().filter_map(|row| row.reason.as_deref()).collect();
+        assert_eq!(reasons, ["a.png: image is missing"]);
+        assert!(table.sets.iter().chain(&table.total).all(|row| row.reason.is_none()));
         assert_eq!((table.pairs.len(), table.sets.len(), table.total.len()), (6, 4, 2));
         assert_eq!(table.sets[1].name, "farneback-tv:fast");
         let aee = |row: &Row| row.score.class(Class::All).map(|tally| tally.error().aee_px);
@@ -192,6 +207,7 @@ mod tests {
         let refs: Vec<&PairResult> = all.iter().collect();
         assert_eq!(Table::of(&refs, None).sets[1].ratios.aee, None);
         assert_eq!(Table::of(&refs, Some("none")).sets[0].ratios, Ratios::default());
-        assert!(Table::of(&[], None).sets.is_empty());
+        let none = Table::of(&[], Some("farneback:default"));
+        assert!(none.sets.is_empty() && none.baseline.is_none());
     }
 }

@@ -62,10 +62,17 @@ macro_rules! estimators {
                 $(if name == <$Type>::NAME {
                     return match <$Type>::preset(preset) {
                         Some(parameters) => Ok(Self::$Type(parameters)),
-                        None => Err(unknown("preset", format_args!("{preset:?} with {name}"), <$Type>::PRESETS)),
+                        None => Err(unknown_preset(preset, name, <$Type>::PRESETS)),
                     };
                 })*
                 Err(unknown("algorithm", format_args!("{name:?}"), Self::ALL))
+            }
+
+            /// The names of the methods that have a preset of this name.
+            pub fn with_preset(preset: &str) -> Vec<&'static str> {
+                let all = [$((<$Type>::NAME, <$Type>::PRESETS)),*];
+                let has_it = |presets: &[Choice]| presets.iter().any(|(name, _)| *name == preset);
+                all.into_iter().filter(|(_, presets)| has_it(presets)).map(|(name, _)| name).collect()
             }
 
             /// The method's name.
@@ -139,6 +146,16 @@ impl Default for Algorithm {
     fn default() -> Self {
         Self::Farneback(Farneback::default())
     }
+}
+
+fn unknown_preset(preset: &str, algorithm: &str, known: &[Choice]) -> Error {
+    let mut names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    let others = Algorithm::with_preset(preset).join(" or ");
+    let algorithm_with_it = format!("or the algorithm {others}, which has it");
+    if !others.is_empty() {
+        names.push(&algorithm_with_it);
+    }
+    Error::parameter("preset", format_args!("{preset:?} with {algorithm}"), names.join(", "))
 }
 
 fn unknown(what: &'static str, found: impl std::fmt::Display, known: &[Choice]) -> Error {

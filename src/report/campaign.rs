@@ -1,6 +1,6 @@
 //! A campaign's table as an HTML page.
 
-use super::html::{escape, page, paragraph};
+use super::html::{escape, page, paragraph, table};
 use crate::text::counted;
 
 /// The width of an interval's drawing, pixels.
@@ -57,20 +57,20 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
     let heads: String = labels.iter().map(head).collect();
     let figures: String =
         figures.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
-    let mut table = format!("<table>\n<thead><tr>{heads}{figures}</tr></thead>\n");
+    let mut content = format!("<thead><tr>{heads}{figures}</tr></thead>\n");
     for group in rows.chunk_by(|a, b| a.labels.first() == b.labels.first()) {
         let rows: String = group.iter().map(|row| cells(row, labels.len())).collect();
-        table += &format!("<tbody class=\"group\">\n{rows}</tbody>\n");
+        content += &format!("<tbody class=\"group\">\n{rows}</tbody>\n");
     }
-    table += "</table>\n";
     let flights: usize = rows.iter().map(|row| row.flights).sum();
     let body = format!(
         "{}<section>\n<h2>{}</h2>\n\
          <p>The bar is the share that reached the goal, the line over it the 95 % interval (Wilson). Clearance is the mean of \
          each flight's least; efficiency is progress per metre flown, of the flights that reached the goal.</p>\n\
-         {table}</section>\n",
+         {}</section>\n",
         paragraph(about),
         counted(flights, "flight"),
+        table(&content),
     );
     page(title, &body)
 }
@@ -151,6 +151,11 @@ mod tests {
         assert!(html.contains("&lt;b&gt;") && html.contains("<h2>60 flights</h2>"), "{html}");
         assert!(html.contains("<td>0.967</td>") && html.contains("<td>5900</td>"), "{html}");
         assert_eq!(html.matches("<tbody").count(), 2);
+        // A narrow screen scrolls the table, not the page.
+        assert_eq!(
+            (html.matches("<table").count(), html.matches("<div class=\"wide\"><table>").count()),
+            (1, 1)
+        );
         // 29 of 30 of the bar's 150 px.
         assert!(html.contains("class=\"bar\" x=\"0\" y=\"4\" width=\"145.0\""), "{html}");
     }

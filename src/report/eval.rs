@@ -1,7 +1,7 @@
 //! The errors of flow algorithms on data sets as an HTML page.
 
 use super::error_map::ERROR_COLOURS;
-use super::html::{data_uri, escape, figure, page, paragraph, section};
+use super::html::{data_uri, escape, figure, page, paragraph, section, table};
 use super::plot::{Curve, Plot};
 use crate::frame::Size;
 
@@ -30,6 +30,8 @@ pub struct EvalSet {
     pub tables: Vec<EvalTable>,
     /// The confidence's curves of each run; the first five are drawn.
     pub curves: Vec<EvalCurves>,
+    /// What failed: the pair, the runs, and the reason.
+    pub failures: Vec<[String; 3]>,
     /// The pairs whose images are shown.
     pub pairs: Vec<EvalPair>,
 }
@@ -94,6 +96,9 @@ impl EvalPage {
 impl EvalSet {
     fn html(&self) -> String {
         let mut content: String = self.tables.iter().map(EvalTable::html).collect();
+        if !self.failures.is_empty() {
+            content += &self.failed();
+        }
         if !self.curves.is_empty() {
             content += &paragraph(
                 "Left: how many of the bad pixels (error over 0.5 px) an alarm at low confidence finds, against its false \
@@ -108,6 +113,21 @@ impl EvalSet {
             content += &self.pairs.iter().map(EvalPair::html).collect::<String>();
         }
         section(&self.name, &self.about, &content)
+    }
+
+    fn failed(&self) -> String {
+        let row = |[pair, runs, reason]: &[String; 3]| {
+            let cells = [pair, runs, reason].map(|text| format!("<td class=\"text\">{}</td>", escape(text)));
+            format!("<tr>{}</tr>\n", cells.concat())
+        };
+        let heads =
+            ["pair", "runs", "reason"].map(|head| format!("<th class=\"label\" scope=\"col\">{head}</th>"));
+        paragraph("What failed; no figure counts it")
+            + &table(&format!(
+                "<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody>\n",
+                heads.concat(),
+                self.failures.iter().map(row).collect::<String>()
+            ))
     }
 
     fn drawn(&self) -> impl Iterator<Item = (&EvalCurves, &'static str)> {
@@ -172,10 +192,8 @@ impl EvalTable {
             format!("<tr>{}</tr>\n", row.iter().enumerate().map(cell).collect::<String>())
         };
         let rows: String = self.rows.iter().map(row).collect();
-        format!(
-            "{}<div class=\"wide\"><table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
-            paragraph(&self.about)
-        )
+        paragraph(&self.about)
+            + &table(&format!("<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n"))
     }
 }
 
@@ -225,6 +243,7 @@ mod tests {
                 heads: vec![text("run"), text("AEE <px>")],
                 rows: vec![vec![(text("r&r"), false), (text("0.1"), true)]],
             }],
+            failures: vec![[text("p<"), text("r&r"), text("a <b>")]],
             curves: vec![curves.clone(), EvalCurves { roc: Vec::new(), ..curves }],
             pairs: vec![EvalPair {
                 name: text("p<"),
@@ -240,10 +259,18 @@ mod tests {
         let html = EvalPage { about: text("<on>"), sets: vec![set, EvalSet::default()] }.html();
         assert_eq!(check(&html), Ok(()));
         assert!(
-            html.contains("&lt;set&gt;") && html.contains("<b>0.1</b>") && html.contains("r&amp;r"),
+            html.contains("a &lt;b&gt;")
+                && html.contains("&lt;set&gt;")
+                && html.contains("<b>0.1</b>")
+                && html.contains("r&amp;r"),
             "{html}"
         );
         assert_eq!(html.matches("data:image/png;base64,AQID").count(), 1);
+        // A narrow screen scrolls the tables, not the page.
+        assert_eq!(
+            (html.matches("<table").count(), html.matches("<div class=\"wide\"><table>").count()),
+            (2, 2)
+        );
         // One ROC, and two curves of each run.
         assert_eq!(html.matches("<path class=\"curve").count(), 1 + 4);
     }

@@ -73,6 +73,11 @@ pub(super) fn section(heading: &str, about: &str, content: &str) -> String {
     format!("<section>\n<h2>{}</h2>\n{}{content}</section>\n", escape(heading), paragraph(about))
 }
 
+/// A table of this content, which is not escaped. On a narrow screen it scrolls in a box of its own, not with the page.
+pub(super) fn table(content: &str) -> String {
+    format!("<div class=\"wide\"><table>\n{content}</table></div>\n")
+}
+
 /// A table of names and values, all escaped here.
 pub(super) fn figures(rows: &[(&str, String)]) -> String {
     let row = |(name, value): &(&str, String)| {

@@ -36,6 +36,4 @@ mod tracker;
 pub use parameters::TrackParameters;
 pub use plan::{MAX_POINTS, plan, pyramid};
 pub use points::{PointTracker, TrackedPoint};
-#[cfg(feature = "cli")]
-pub(crate) use tracker::is_inside;
 pub use tracker::{Track, TrackStatus, Tracker, TrackerConfig};

@@ -16,7 +16,7 @@ pub struct TrackerConfig {
     /// The largest forward–backward error of a track in pixels, above 0; `None` follows nothing back.
     pub forward_backward_px: Option<f32>,
     /// Corners are detected again when fewer tracks than this live, so that there are `max_corners` again where the image
-    /// has them; they keep their distance from live tracks. 0 detects them in the first frame only.
+    /// has them; they keep their distance from live tracks. At most `max_corners`; 0 detects them in the first frame only.
     pub min_tracks: usize,
 }
 
@@ -107,6 +107,10 @@ impl Tracker {
         if !(1..=MAX_POINTS).contains(&capacity) {
             return Err(Error::parameter("max_corners", capacity, format_args!("1 to {MAX_POINTS}")));
         }
+        if config.min_tracks > capacity {
+            let expected = format_args!("at most max_corners, {capacity}");
+            return Err(Error::parameter("min_tracks", config.min_tracks, expected));
+        }
         if let Some(limit) = config.forward_backward_px.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
             return Err(Error::parameter("forward_backward_px", limit, "a finite number of pixels over 0"));
         }
@@ -136,8 +140,7 @@ impl Tracker {
             let expected = format_args!("at most max_corners, {}", self.config.corners.max_corners);
             return Err(Error::parameter("number of points", points.len(), expected));
         }
-        if let Some((i, [x, y])) = points.iter().enumerate().find(|(_, point)| !is_inside(**point, self.size))
-        {
+        if let Some((i, [x, y])) = points.iter().enumerate().find(|(_, point)| !self.size.contains(**point)) {
             let expected = format_args!("a place inside the frame of {}", self.size);
             return Err(Error::parameter("points", format_args!("({x}, {y}) at index {i}"), expected));
         }
@@ -199,17 +202,11 @@ impl Tracker {
     }
 }
 
-/// Whether a point lies between the pixels of the frame. NaN does not.
-pub(crate) fn is_inside([x, y]: [f32; 2], size: Size) -> bool {
-    let within = |at: f32, side: u32| at >= 0.0 && at <= (side - 1) as f32;
-    within(x, size.width) && within(y, size.height)
-}
-
 fn status(point: &TrackedPoint, limit: Option<f32>, size: Size) -> TrackStatus {
     let returns = |limit: f32| point.forward_backward_px.is_some_and(|error| error <= limit);
     if !point.found {
         TrackStatus::Lost
-    } else if !is_inside([point.x, point.y], size) {
+    } else if !size.contains([point.x, point.y]) {
         TrackStatus::Outside
     } else if limit.is_some_and(|limit| !returns(limit)) {
         TrackStatus::Inconsistent

@@ -56,6 +56,26 @@ fn threads_and_shards_do_not_change_what_is_written() {
 }
 
 #[test]
+fn an_empty_shard_is_told_and_other_files_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let args = ["--seeds", "0..2", "--shard", "3/3"];
+    let ended = well(campaign(folder, "part", &args));
+    assert!(ended.stderr.contains("shard 3/3 of 2 flights is empty"), "{}", ended.stderr);
+    assert!(well(campaign(folder, "part", &[&args[..], &["--quiet"]].concat())).stderr.is_empty());
+    fs::create_dir(folder.join("foreign")).unwrap();
+    fs::write(folder.join("foreign/report.html"), "my own").unwrap();
+    let ended = campaign(folder, "foreign", &args);
+    let words = ["-o is a folder with foreign/report.html", "the results.jsonl of an earlier campaign"];
+    assert!(
+        ended.code == Some(2) && words.iter().all(|word| ended.stderr.contains(word)),
+        "{}",
+        ended.stderr
+    );
+    assert_eq!(read(folder, "foreign/report.html"), "my own");
+}
+
+#[test]
 fn the_table_counts_what_the_flights_say() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

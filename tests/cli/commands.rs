@@ -113,6 +113,20 @@ fn two_pictures_give_the_flow_between_them() {
 }
 
 #[test]
+fn an_algorithm_that_needs_a_stream_says_so_for_a_pair() {
+    let folder = frames();
+    let told = |args: &[&str]| {
+        let all = [&["flow", "--backend", "cpu", "--algorithm", "flow-filter"], args].concat();
+        run(&folder, &all)
+            .well()
+            .stderr
+            .contains("flow-filter corrects the flow of earlier pairs, and warms up")
+    };
+    assert!(told(&["0.png", "1.png"]));
+    assert!(!told(&["0.png", "1.png", "--quiet"]) && !told(&["%d.png"]));
+}
+
+#[test]
 fn the_confidence_is_low_where_there_is_nothing_to_see() {
     let folder = frames();
     for number in 0..2 {

@@ -107,7 +107,9 @@ fn outputs() {
         (&["o.flo", "--color", "c.jpg"], &["c.jpg", ".png"]),
         (&["o.flo", "--color", "missing/c.png"], &["missing"]),
         (&["o.flo", "--confidence", "c.flo"], &["c.flo", ".npy or .png"]),
-        (&["o.png", "--color", "o.png"], &["o.png twice"]),
+        (&["o.png", "--color", "./o.png"], &["--color is ./o.png, expected a path other than that of -o"]),
+        (&["o.flo", "--color", "a.png"], &["--color is a.png, expected a path other than that of the input"]),
+        (&["o.flo", "--color", "c.mp4"], &["c.mp4: extension is .mp4, expected .png"]),
         (&["o.flo", "--color", "c.png", "--scale", "0"], &["--scale is 0"]),
         (&["o.flo", "--color", "c.png", "--scale", "NaN"], &["--scale is NaN"]),
         (&["o.flo", "--arrows", "r.png", "--arrow-gain", "-1"], &["--arrow-gain is -1"]),
@@ -122,12 +124,21 @@ fn outputs() {
         (&["-o", "o.flo"][..], &["o.flo", "a folder"][..]),
         (&["-o", "file"], &["file"]),
         (&["-o", "-", "--format", "kitti"], &["kitti"]),
-        (&["-o", "o", "--format", "kitti", "--color", "o"], &["twice"]),
+        (&["-o", "o", "--format", "kitti", "--color", "o"], &["--color is o,", "that of -o"]),
+        (
+            &["--color", "c.mp4"],
+            &["c.mp4", "a folder, as the input is a sequence", "ffmpeg -i c/%06d.png c.mp4"],
+        ),
         (&["-o", "o", "--init", "good.flo"], &["--init", "--warm-start"]),
         (&["--format", "flo"], &["--format", "-o"]),
     ] {
         refused(&folder, &[&many[..], args].concat(), words);
     }
+    refused(
+        &folder,
+        &["flow", "?.png", "--color", "."],
+        &["--color is ., expected a path other than that of the input"],
+    );
     refused(&folder, &["demo", "-o", "file"], &["file"]);
     refused(&folder, &["demo", "-o", "file/demo"], &["file"]);
 }
@@ -136,16 +147,20 @@ fn outputs() {
 fn parameters() {
     let folder = files();
     for (args, words) in [
-        (&["--pyr-scale", "NaN"][..], &["pyr_scale is NaN", "above 0 and below 1"][..]),
-        (&["--pyr-scale", "-0.5"], &["pyr_scale is -0.5"]),
-        (&["--poly-sigma", "inf"], &["poly_sigma is inf", "0 to 100"]),
-        (&["--levels", "33"], &["levels is 33", "0 to 32"]),
+        (&["--pyr-scale", "NaN"][..], &["--pyr-scale is NaN", "above 0 and below 1"][..]),
+        (&["--pyr-scale", "-0.5"], &["--pyr-scale is -0.5"]),
+        (&["--pyr-scale", "half"], &["--pyr-scale is \"half\""]),
+        (&["--poly-sigma", "inf"], &["--poly-sigma is inf", "0 to 100"]),
+        (&["--levels", "33"], &["--levels is 33", "0 to 32"]),
         (&["--levels", "-1"], &["--levels", "-1"]),
-        (&["--winsize", "1"], &["winsize is 1", "2 to 1024"]),
-        (&["--iterations", "0"], &["iterations is 0", "1 to 1000"]),
-        (&["--poly-n", "33"], &["poly_n is 33"]),
-        (&["--update", "increment"], &["iterations is 3", "1 with a box window of increments"]),
-        (&["--preset", "best"], &["best", "fast, default, accurate, increment"]),
+        (&["--winsize", "1"], &["--winsize is 1", "2 to 1024"]),
+        (&["--iterations", "0"], &["--iterations is 0", "1 to 1000"]),
+        (&["--poly-n", "33"], &["--poly-n is 33"]),
+        (&["--update", "increment"], &["--iterations is 3", "1 with a box window of increments"]),
+        (
+            &["--preset", "best"],
+            &["--preset is \"best\" with farneback", "or the algorithm farneback-tv, which has it"],
+        ),
         (&["--window", "round"], &["round", "box, gaussian"]),
         (&["--backend", "tpu"], &["tpu", "gpu, cpu"]),
         (&["--no-such-flag"], &["--no-such-flag"]),

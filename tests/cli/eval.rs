@@ -10,23 +10,23 @@ use viewsphere::io::{flo, kitti, npy, picture};
 
 use crate::program::{Ended, program};
 
-const SIZE: Size = Size::new(48, 40);
+pub(crate) const SIZE: Size = Size::new(48, 40);
 /// Pixels with a wrong truth.
 const WRONG: usize = 48;
 /// Cheap and certain: on the CPU, without times.
 const CHEAP: [&str; 4] = ["--backend", "cpu", "--repeats", "0"];
 
-fn eval(folder: &Path, args: &[&str]) -> Ended {
+pub(crate) fn eval(folder: &Path, args: &[&str]) -> Ended {
     program(folder, &[&["eval"], args, &CHEAP].concat())
 }
 
 #[track_caller]
-fn well(ended: Ended) -> Ended {
+pub(crate) fn well(ended: Ended) -> Ended {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     ended
 }
 
-fn read(folder: &Path, name: &str) -> String {
+pub(crate) fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).unwrap()
 }
 
@@ -40,7 +40,7 @@ fn write_frame(path: &Path, image: &Image) {
 }
 
 /// A set of two pairs by Middlebury's convention. The truth of the last row is wrong by 2 px, so that there are bad pixels.
-fn middlebury(folder: &Path) {
+pub(crate) fn middlebury(folder: &Path) {
     let scene = Scene::new(SIZE).unwrap();
     for (name, number) in [("One", 0), ("Two", 5)] {
         let own = folder.join(name);
@@ -156,22 +156,6 @@ fn every_kind_of_set_is_read() {
 }
 
 #[test]
-fn flags_of_the_other_form_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    middlebury(&at.join("mb"));
-    let truth = "mb/One/flow10.flo";
-    let single = ["eval", "--truth", truth, truth];
-    assert_eq!(program(at, &single).code, Some(0));
-    for flags in [&["--csv", "x.csv"][..], &["--html", "x.html"], &["-o", "x"], &["--run", "farneback"]] {
-        let ended = program(at, &[&single, flags].concat());
-        assert!(ended.code == Some(2) && ended.stderr.contains("--data"), "{flags:?}: {}", ended.stderr);
-    }
-    let ended = eval(at, &["--data", "mb", "--run", "farneback:fast", "--mask", "none.png"]);
-    assert!(ended.code == Some(2) && ended.stderr.contains("--truth"), "{}", ended.stderr);
-}
-
-#[test]
 fn the_literatures_errors_stand_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -222,26 +206,6 @@ fn results_are_resumed_and_shards_merged() {
 }
 
 #[test]
-fn results_of_other_files_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    middlebury(&at.join("mb"));
-    let args = ["--data", "mb", "--run", "farneback-tv:fast", "-o", "out"];
-    well(eval(at, &args));
-    let flow = Scene::new(SIZE).unwrap().flow(3);
-    flo::write(at.join("mb/Two/flow10.flo"), &flow).unwrap();
-    let ended = eval(at, &args);
-    assert_eq!(ended.code, Some(2));
-    let words = ["out/results.jsonl", "digest of the files of mb/Two", "another folder"];
-    assert!(words.iter().all(|word| ended.stderr.contains(word)), "{}", ended.stderr);
-    // Merging them with results of the new files is refused, too.
-    well(eval(at, &["--data", "mb", "--run", "farneback-tv:fast", "-o", "new"]));
-    let ended = program(at, &["eval", "merge", "out", "new", "-o", "both"]);
-    assert_eq!(ended.code, Some(2));
-    assert!(ended.stderr.contains("mb/Two/farneback-tv:fast/cpu with input"), "{}", ended.stderr);
-}
-
-#[test]
 fn a_pair_that_cannot_be_read_fails_alone() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -279,6 +243,16 @@ fn a_pair_that_cannot_be_read_fails_alone() {
     for (line, words) in lines.iter().zip(expected) {
         assert!(words.iter().all(|word| line.contains(word)), "{line}");
     }
+    // Each place where results are read tells the reason.
+    let reason = "mb/Missing/frame11.png: image is missing";
+    for file in ["table.csv", "table.json", "report.html"] {
+        assert!(read(at, &format!("out/{file}")).contains(reason), "{file}");
+    }
+    assert!(
+        ended.stdout.contains(&format!("failed  Missing with farneback-tv:fast: {reason}")),
+        "{}",
+        ended.stdout
+    );
     // The others have their figures, and once the files are whole, only what failed is tried again.
     assert!(ended.stdout.contains("mb, 5 pairs") && ended.stdout.contains("failed"), "{}", ended.stdout);
     for name in ["Cut", "Missing", "Small"] {
@@ -292,39 +266,44 @@ fn a_pair_that_cannot_be_read_fails_alone() {
 }
 
 #[test]
-fn what_is_wrong_on_the_command_line_is_one_line() {
+fn more_shards_than_pairs_leave_empty_ones_that_merge() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     middlebury(&at.join("mb"));
-    fs::create_dir(at.join("empty")).unwrap();
-    let cases: [(&[&str], &[&str]); 14] = [
-        (&[], &["what to evaluate is missing", "--truth FILE", "--data FOLDER"]),
-        (&["--truth", "mb/One/flow10.flo"], &["flow field to evaluate is missing"]),
-        (&["--data", "empty"], &["empty: data set is none", "frame10.png"]),
-        (&["--data", "nowhere"], &["nowhere", "No such file"]),
-        (&["--data", "mb", "--kind", "sintel"], &["mb: data set is none", "frame_NNNN"]),
-        (&["--data", "mb", "--kind", "middleburg"], &["middleburg", "sintel"]),
-        (&["--data", "mb", "--run", "farneback:fastest"], &["preset", "fastest"]),
-        (
-            &["--data", "mb", "--algorithm", "farneback", "--preset", "fine"],
-            &["preset is fine with farneback"],
-        ),
-        (
-            &["--data", "mb", "--run", "farneback", "--baseline", "farneback-tv"],
-            &["--baseline", "farneback:default"],
-        ),
-        (&["--data", "mb", "--pairs", "Three"], &["--pairs is Three", "mb/One"]),
-        (&["--data", "mb", "--shard", "3/2"], &["3/2", "I/N"]),
-        (&["--data", "mb", "mb"], &["two data sets named mb"]),
-        (&["--data", "mb", "--html", "no/a.html"], &["no"]),
-        (&["--data", "mb", "--truth", "a.flo", "b.flo"], &["--truth", "--data"]),
-    ];
-    for (args, words) in cases {
-        let own: Vec<&str> = [&["eval"], args].concat();
-        let ended = program(at, &own);
-        assert_eq!(ended.code, Some(2), "{args:?}: {}", ended.stderr);
-        assert!(ended.stdout.is_empty(), "{args:?}: {}", ended.stdout);
-        let last = ended.stderr.lines().last().unwrap_or_default();
-        assert!(words.iter().all(|word| last.contains(word)), "{args:?}: {words:?} in {}", ended.stderr);
+    let runs = ["--data", "mb", "--run", "farneback-tv:fast", "-o"];
+    for number in ["1", "2", "3"] {
+        let shard = format!("{number}/3");
+        let ended = well(eval(at, &[&runs[..], &[&format!("part_{number}"), "--shard", &shard]].concat()));
+        let told = ended.stderr.contains("shard 3/3 of 2 pairs is empty");
+        assert_eq!(told, number == "3", "{}", ended.stderr);
+        assert_eq!(ended.stdout == "no results\n", number == "3", "{}", ended.stdout);
     }
+    let empty = json(&read(at, "part_3/table.json"));
+    assert_eq!((&empty["baseline"], &empty["pairs"]), (&Value::Null, &Value::Array(Vec::new())));
+    let quiet = well(eval(at, &[&runs[..], &["part_3", "--shard", "3/3", "--quiet"]].concat()));
+    assert!(quiet.stderr.is_empty(), "{}", quiet.stderr);
+    let merged =
+        well(program(at, &["eval", "merge", "part_3", "part_1", "part_2", "-o", "merged", "--json"]));
+    assert_eq!(json(&merged.stdout)["pairs"].as_array().unwrap().len(), 2);
+    let ended = program(at, &["eval", "merge", "part_1", "-o", "again", "--baseline", "farneback"]);
+    let words = ["--baseline is farneback:default", "one of the runs: farneback-tv:fast"];
+    assert!(
+        ended.code == Some(2) && words.iter().all(|word| ended.stderr.contains(word)),
+        "{}",
+        ended.stderr
+    );
+    assert!(!at.join("again").exists());
+}
+
+#[test]
+fn a_preset_runs_the_algorithms_that_have_it_and_each_backend_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    middlebury(&at.join("mb"));
+    let args = ["eval", "--data", "mb", "--pairs", "One", "--preset", "affine", "--repeats", "0", "--json"];
+    let ended = well(program(at, &[&args[..], &["--backend", "cpu,cpu"]].concat()));
+    let rows = json(&ended.stdout)["total"].clone();
+    let runs: Vec<&str> = rows.as_array().unwrap().iter().map(|row| row["run"].as_str().unwrap()).collect();
+    assert_eq!(runs, ["farneback:affine"]);
+    assert!(ended.stderr.contains("1 evaluation on 1 pair"), "{}", ended.stderr);
 }

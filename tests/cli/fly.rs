@@ -180,7 +180,9 @@ fn a_world_that_cannot_be_saved_leaves_no_folder() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::create_dir(folder.join("here")).unwrap();
-    for (world, output) in [("none/world.json", "a/b"), ("here", "a"), ("here", "here")] {
+    for (world, output) in
+        [("none/world.json", "a/b"), ("here", "a"), ("here", "here"), ("a/flight.jsonl", "a")]
+    {
         let ended = fly(folder, output, &["--sensor", "depth", "--save-world", world]);
         assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1), "{}", ended.stderr);
         assert_eq!(names(folder), ["here"], "{world}");

@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -80,4 +81,47 @@ fn a_flight_that_is_stopped_leaves_nothing() {
         assert_eq!(stopped.wait().unwrap().code(), Some(130), "{signal}");
         assert_eq!(names(&folder.path().join("a")), [""; 0], "{signal}");
     }
+}
+
+/// Starts to track frames that come through a pipe, and waits until both results have begun.
+fn tracking(folder: &Path) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewsphere"));
+    let args =
+        ["track", "-", "--raw", "64x48", "-o", "t.csv", "--overlay", "o.y4m", "--backend", "cpu", "--quiet"];
+    command.args(args).current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::null());
+    let mut tracking = command.spawn().unwrap();
+    // The pipe stays open, so that a third frame is waited for.
+    tracking.stdin.as_mut().unwrap().write_all(&[90; 2 * 64 * 48]).unwrap();
+    let since = Instant::now();
+    while names(folder).len() < 2 {
+        assert!(since.elapsed().as_secs() < 60 && tracking.try_wait().unwrap().is_none());
+        sleep(Duration::from_millis(5));
+    }
+    tracking
+}
+
+#[test]
+fn tracking_that_is_stopped_leaves_nothing() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut stopped = tracking(folder.path());
+        let sent = Command::new("kill").args([signal, &stopped.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        assert_eq!(stopped.wait().unwrap().code(), Some(130), "{signal}");
+        assert_eq!(names(folder.path()), [""; 0], "{signal}");
+    }
+}
+
+#[test]
+fn what_killed_tracking_has_left_goes_with_the_next_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut killed = tracking(folder);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(names(folder).iter().all(|name| name.ends_with(".tmp")), "{:?}", names(folder));
+    let mut next = tracking(folder);
+    drop(next.stdin.take());
+    assert_eq!(next.wait().unwrap().code(), Some(0));
+    assert_eq!(names(folder), ["o.y4m", "t.csv"]);
 }

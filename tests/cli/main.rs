@@ -6,6 +6,7 @@ mod commands;
 mod demo;
 mod errors;
 mod eval;
+mod eval_errors;
 mod feed;
 mod fly;
 mod interrupted;

@@ -324,7 +324,7 @@ fn an_overlay_shows_every_frame_and_is_whole_or_not_there() {
     for (path, words) in [
         ("o.mp4", &["o.mp4", "expected .y4m"][..]),
         ("missing/o.y4m", &["missing"]),
-        ("./", &["--overlay", "not a folder"]),
+        ("./", &["--overlay", "a folder, expected .y4m"]),
         ("-", &["--overlay is -", "--quiet"]),
     ] {
         refused(&folder, &["a.y4m", "--fov-deg", "90", "--overlay", path], words);
@@ -371,15 +371,15 @@ fn what_does_not_belong_together_is_refused() {
         (&["a.y4m", fov[0], fov[1], "--gyro", "gyro.csv", "--gyro-bias", "0,0"], &["3 numbers"]),
         (
             &["a.y4m", fov[0], fov[1], "--gyro", "gyro.csv", "--camera-from-gyro", "1,0,0,0,1,0,0,0,2"],
-            &["camera_from_gyro"],
+            &["--camera-from-gyro is"],
         ),
         (
             &["a.y4m", fov[0], fov[1], "--overlay", "o.y4m", "--gyro", "gyro.csv", "--level", "0,95"],
             &["--level is 95", "-90 to 90 degrees of pitch"],
         ),
         (&["a.y4m", fov[0], fov[1], "--overlay", "o.y4m", "--level", "0,0"], &["--gyro"]),
-        (&["a.y4m", fov[0], fov[1], "--sectors", "300x1"], &["sectors is 300"]),
-        (&["a.y4m", fov[0], fov[1], "--within-s", "0"], &["within_s is 0", "above 0"]),
+        (&["a.y4m", fov[0], fov[1], "--sectors", "300x1"], &["--sectors is 300"]),
+        (&["a.y4m", fov[0], fov[1], "--within-s", "0"], &["--within-s is 0", "above 0"]),
         (&["a.y4m", fov[0], fov[1], "--fps", "0"], &["0.001 to 1000000"]),
         (&["a.y4m", fov[0], fov[1], "--start-s", "inf"], &["--start-s is inf"]),
         (&["a.y4m", fov[0], fov[1], "--quiet", "--json-lines"], &["--json-lines"]),

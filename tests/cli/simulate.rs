@@ -193,6 +193,10 @@ fn the_same_command_makes_the_same_set_and_spares_what_is_there() {
     again(&["--force", "--fps", "60"]).unwrap();
     assert_eq!(count(&a.path().join("set/frames")), 24);
     assert_eq!(count(a.path()), 1);
+    // The camera's file would be removed with the folder.
+    let own = ["simulate", "--seconds", "0.4", "--camera", "set/camera.yaml", "-o", "set", "--force"];
+    let text = run(a.path(), &own).unwrap_err();
+    assert!(text.contains("--camera is set/camera.yaml, expected a file outside set"), "{text}");
     // A folder that is not a data set is never replaced.
     fs::remove_file(a.path().join("set/poses.csv")).unwrap();
     let text = again(&["--force"]).unwrap_err();

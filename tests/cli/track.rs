@@ -32,6 +32,7 @@ fn files() -> TempDir {
         ("outside.csv", "40,30\n96,3\n"),
         ("nan.csv", "40,NaN\n"),
         ("none.csv", "x,y\n"),
+        ("three.csv", "x,y\n40,30\n50,36,9\n"),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -136,9 +137,10 @@ fn bad_input_is_one_line() {
         (&["0.png", "no.png", "-o", "t.csv"], &["no.png"]),
         (
             &["0.png", "1.png", "--points", "outside.csv"],
-            &["outside.csv", "96,3", "inside the 96×72 of 0.png"],
+            &["outside.csv: a point is 96,3 in line 2", "inside the 96×72 of 0.png"],
         ),
         (&["0.png", "1.png", "--points", "nan.csv"], &["nan.csv", "line 1", "finite"]),
+        (&["0.png", "1.png", "--points", "three.csv"], &["three.csv", "\"50,36,9\" in line 3", "no more"]),
         (&["0.png", "1.png", "--points", "none.csv"], &["none.csv", "number of points is 0"]),
         (&["0.png", "1.png", "--points", "missing.csv"], &["missing.csv"]),
     ] {
@@ -160,12 +162,28 @@ fn bad_input_is_one_line() {
         (&["--k", "0.1"], &["--harris"]),
         (&["--max-corners", "0"], &["\"0\"", "1 to 65535"]),
         (&["--forward-backward", "NaN"], &["--forward-backward is NaN"]),
-        (&["--points", "points.csv", "--max-corners", "1"], &["number of points is 2", "max_corners, 1"]),
+        (
+            &["--points", "points.csv", "--max-corners", "1"],
+            &["points.csv: number of points is 2, expected at most --max-corners, 1"],
+        ),
+        (
+            &["--max-corners", "5", "--min-tracks", "6"],
+            &["--min-tracks is 6, expected at most --max-corners, 5"],
+        ),
         (&["-o", "t.txt"], &["t.txt", ".csv"]),
         (&["-o", "missing/t.csv"], &["missing"]),
         (&["-o", "-", "--json"], &["--json"]),
         (&["--overlay", "-"], &["--overlay"]),
-        (&["--overlay", "0.png"], &["0.png"]),
+        (&["--overlay", "0.png"], &["0.png: extension is .png, expected .y4m or a folder"]),
+        (&["--overlay", "o.mp4"], &["o.mp4: extension is .mp4", "ffmpeg -i o.y4m o.mp4"]),
+        (
+            &["-o", "t.csv", "--overlay", "t.csv/"],
+            &["--overlay is t.csv/, expected a path other than that of -o"],
+        ),
+        (
+            &["-o", "t.csv", "--overlay", "t.csv/a"],
+            &["--overlay is t.csv/a, expected a path other than that of -o"],
+        ),
         (&["--points", "points.csv", "-o", "points.csv"], &["-o", "points.csv"]),
     ] {
         refused(&folder, &[&pair[..], args].concat(), words);

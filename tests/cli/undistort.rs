@@ -245,7 +245,10 @@ fn bad_input_is_named() {
         (&["--camera", "cam.yml", "gray.png", "-o", "o.jpg"], &["o.jpg", ".png"]),
         (&["--camera", "cam.yml", "gray.png", "-o", "no/o.png"], &["no"]),
         (&["--camera", "cam.yml", "f%d.png", "-o", "o.png"], &["o.png", "a folder"]),
-        (&["--camera", "cam.yml", "gray.png", "--field", "o.png", "-o", "o.png"], &["o.png twice"]),
+        (
+            &["--camera", "cam.yml", "gray.png", "--field", "o.png", "-o", "o.png"],
+            &["--field is o.png,", "that of -o"],
+        ),
         (&["--camera", "cam.yml", "gray.png", "--field", "-"], &["--field is -"]),
         (&["--camera", "cam.yml", "gray.png", "--write-camera", "o.txt"], &["o.txt", ".yaml or .yml"]),
         (

@@ -155,6 +155,7 @@ fn wrong_parameters_and_points_are_refused() {
         change(&mut config);
         Tracker::new(&Backend::Cpu, SIZE, PixelFormat::Gray8, &config)
     };
+    refused(with(&|c| c.min_tracks = 11), "min_tracks is 11, expected at most max_corners, 10");
     refused(with(&|c| c.corners.max_corners = 0), "max_corners is 0, expected 1 to 65535");
     refused(with(&|c| c.corners.quality_level = f64::NAN), "quality_level is NaN");
     refused(with(&|c| c.corners.quality_level = 0.0), "quality_level is 0");

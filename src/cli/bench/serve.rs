@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use crate::backend::Backend;
 use crate::benchmark::timed;
 use crate::cli::backend::{BackendArg, BackendArgs};
-use crate::cli::{input, print};
+use crate::cli::print;
 use crate::engine::{Config, Engine};
 use crate::error::{Error, Result};
 use crate::flow::{Algorithm, Farneback, Window};
 use crate::frame::{Frame, PixelFormat, Size};
 use crate::gpu::Gpu;
-use crate::io::flo;
+use crate::io::{flo, picture};
 
 /// The number of engines kept; more could fill the device's memory.
 const MAX_ENGINES: usize = 4;
@@ -86,7 +86,7 @@ impl Server<'_> {
     fn answer(&mut self, line: &str) -> Result<Answer> {
         let request: Request = serde_json::from_str(line)
             .map_err(|error| Error::parameter("request", error, "an object as in benches/opencv.py"))?;
-        let [a, b] = input::pair(&request.a, &request.b)?;
+        let [a, b] = picture::read_pair(&request.a, &request.b)?;
         let frames = [a.frame()?, b.frame()?];
         let backend = match request.backend.as_str() {
             "gpu" => BackendArg::Gpu,

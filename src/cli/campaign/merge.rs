@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::RESULTS;
+use crate::cli::paths::are_apart;
+use crate::cli::place::Place;
 use crate::cli::{Outcome, input};
 use crate::error::{Error, Result};
 use crate::sim::campaign::Results;
@@ -32,7 +34,8 @@ impl Merge {
     pub(super) fn run(&self) -> Result<Outcome> {
         let paths: Vec<PathBuf> = self.inputs.iter().map(|folder| folder.join(RESULTS)).collect();
         let output = self.output.join(RESULTS);
-        input::spared("-o", Some(&output), paths.iter().map(PathBuf::as_path))?;
+        let result = Place::File(output.clone());
+        are_apart(&[("-o", Some(&result))], paths.iter().map(PathBuf::as_path))?;
         let mut merged: Option<Results> = None;
         for path in &paths {
             let results = Results::read(path)?;
@@ -44,6 +47,7 @@ impl Merge {
         let none = || Error::parameter("number of folders", 0, "at least 1");
         let merged = merged.ok_or_else(none)?;
         input::folder(&self.output)?;
+        super::spare(&self.output)?;
         fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
         merged.write(output)?;
         super::finish(&merged, &self.output, self.json)

@@ -9,19 +9,19 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use self::merge::Merge;
 use super::args::{named_by_flags, whole_within};
 use super::backend::BackendArgs;
 use super::fly::setup::SetupArgs;
-use super::{Outcome, input, print};
+use super::progress::Progress;
+use super::{Outcome, input, paths, print};
 use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::journal::{Configuration, Opened, Shard};
 use crate::sim::CourseKind;
-use crate::sim::campaign::{Campaign as Plan, Ended, Faults, Job, Journal, Results, fly_all};
+use crate::sim::campaign::{Campaign as Plan, Ended, Faults, Journal, Results, fly_all};
 use crate::sim::flight::{self, MAX_LATENCY_FRAMES, Sensor};
 use crate::steer::{Danger, Policy};
 use crate::text::counted;
@@ -100,7 +100,8 @@ pub(super) struct Campaign {
     /// Seeds of the worlds: FIRST..LAST, without LAST, or a single one
     #[arg(long, value_name = "FIRST..LAST", allow_hyphen_values = true, default_value = "0..10")]
     seeds: Seeds,
-    /// Folder to write into, created if missing
+    /// Folder to write into, created if missing. Files of an earlier campaign are replaced, other files of these names are
+    /// not
     #[arg(short, long, value_name = "FOLDER", default_value = "campaign")]
     output: PathBuf,
     /// Flights to fly concurrently, at most 4096 [default: the number of cores]
@@ -109,6 +110,9 @@ pub(super) struct Campaign {
     /// Fly only part I of N, I from 1 to N; `campaign merge` combines the parts
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL)]
     shard: Shard,
+    /// Print no progress and no notes
+    #[arg(long)]
+    quiet: bool,
     /// Print the table as JSON
     #[arg(long)]
     json: bool,
@@ -160,12 +164,13 @@ impl Campaign {
         let at_a_time = self.jobs.unwrap_or_else(cores);
         let plan = self.plan()?;
         let backend = match self.sensors.contains(&Sensor::Images) {
-            true => self.backend.open()?,
+            true => self.backend.open(self.quiet)?,
             false => Backend::Cpu,
         };
         let flags = [("speed_m_s", "--speeds"), ("size", "--sizes")];
         plan.validate(&backend).map_err(|error| named_by_flags(error, &flags))?;
         input::folder(&self.output)?;
+        spare(&self.output)?;
         let path = self.output.join(RESULTS);
         let configuration = Configuration::new(&plan.base, self.setup.text())?;
         let Opened { mut journal, mut results, repaired } = Journal::open(&path, &configuration)?;
@@ -175,23 +180,30 @@ impl Campaign {
         if self.sensors.contains(&Sensor::Images) {
             results.check_adapter(&path, &backend.name())?;
         }
-        let mut jobs = self.shard.part(plan.jobs());
+        let jobs = plan.jobs();
+        let count = jobs.len();
+        let mut jobs = self.shard.part(jobs);
         let all = jobs.len();
+        if all == 0 && !self.quiet {
+            print::empty_shard(self.shard, counted(count, "flight"));
+        }
         jobs.retain(|job| !results.has_flown(&job.key()));
         // Seed by seed, so that an interrupted campaign covers every setting and the time left is known early.
         jobs.sort_by_key(|job| job.seed);
-        print::note(format_args!("{}, {} already done", counted(all, "flight"), all - jobs.len()));
-        let bar = progress(&jobs);
+        if !self.quiet {
+            print::note(format_args!("{}, {} already done", counted(all, "flight"), all - jobs.len()));
+        }
+        let progress = Progress::new(Some(jobs.len() as u64), "flights", self.quiet);
         let open = || Ok([self.backend.open_like(&backend)?, self.backend.open_like(&backend)?]);
         let mut tally = Tally::default();
         let flown = fly_all(&jobs, &plan.base, at_a_time, &open, |result| {
             journal.add(&result)?;
             tally.add(&result.ended);
-            bar.set_message(tally.text());
-            bar.inc(1);
+            progress.tell(tally.text());
+            progress.inc();
             results.add(&path, result)
         });
-        bar.finish_and_clear();
+        progress.finish();
         drop(journal);
         flown?;
         results.write(&path)?;
@@ -241,6 +253,12 @@ impl Tally {
     }
 }
 
+/// Checks that tables to be replaced in the folder belong to an earlier campaign.
+fn spare(folder: &Path) -> Result<()> {
+    let is_own = folder.join(RESULTS).is_file();
+    paths::of_an_earlier_run(folder, &report::FILES, is_own, "the results.jsonl of an earlier campaign")
+}
+
 /// Writes and prints the table. A failed flight is an error, returned after everything is written.
 fn finish(results: &Results, folder: &Path, json: bool) -> Result<Outcome> {
     let table = results.table();
@@ -261,10 +279,4 @@ fn finish(results: &Results, folder: &Path, json: bool) -> Result<Outcome> {
             Err(Error::parameter("number of flights that failed", failed.count() + 1, expected))
         }
     }
-}
-
-/// A progress bar over the flights, on standard error where that is a terminal.
-fn progress(jobs: &[Job]) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} flights, {eta} left, {msg}");
-    ProgressBar::new(jobs.len() as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -8,14 +8,13 @@ use crate::io::write_bytes;
 use crate::report::{CampaignRow, campaign_page};
 use crate::sim::campaign::{Row, Table};
 
+/// The files of the table.
+pub(super) const FILES: [&str; 3] = ["table.csv", "table.json", "report.html"];
+
 /// Writes the table in every format.
 pub(super) fn write(folder: &Path, table: &Table) -> Result<()> {
-    let texts = [
-        ("table.csv", table.csv()),
-        ("table.json", print::pretty(table)? + "\n"),
-        ("report.html", html(table)),
-    ];
-    for (name, text) in texts {
+    let texts = [table.csv(), print::pretty(table)? + "\n", html(table)];
+    for (name, text) in FILES.into_iter().zip(texts) {
         write_bytes(folder.join(name), text.as_bytes())?;
     }
     Ok(())

@@ -16,6 +16,7 @@ use crate::eval::Scene;
 use crate::flow::{self, Algorithm, FlowOptions};
 use crate::frame::{Image, Plane, Size};
 use crate::gpu::{Gpu, GpuOptions};
+use crate::io::picture;
 use crate::plan::Plan;
 use crate::sphere::{Cameras, ExtraOutputs, Sphere, plan};
 
@@ -95,7 +96,7 @@ impl Crosscheck {
     /// The two images, and the name by which errors refer to them.
     fn pair(&self) -> Result<([Image; 2], PathBuf)> {
         if let [a, b] = self.pictures.as_slice() {
-            return Ok((input::pair(a, b)?, a.clone()));
+            return Ok((picture::read_pair(a, b)?, a.clone()));
         }
         let scene = Scene::new(self.size.unwrap_or(Size::new(640, 480)))?;
         Ok(([scene.frame(0), scene.frame(1)], PathBuf::from("the synthetic pair")))

@@ -17,7 +17,7 @@ use super::backend::BackendArgs;
 use super::eval::FlowErrorFigures;
 use super::flow_args::FlowArgs;
 use super::fly::timing::Timing;
-use super::{Outcome, input, print};
+use super::{Outcome, input, paths, print};
 use crate::error::{Error, Result};
 use crate::frame::Size;
 use crate::io::write_bytes;
@@ -124,6 +124,9 @@ impl Demo {
         if !self.quiet {
             print::note(format_args!("the flow of a pair of {}", self.size));
         }
+        if flow.has_memory() && !self.quiet {
+            print::note(print::alone(flow.name()));
+        }
         let pair = Pair::compute(backend.clone(), self.size, flow)?;
         let plan = Plan {
             course: &course,
@@ -148,14 +151,8 @@ impl Demo {
         let page = File::open(self.output.join(PAGE));
         let read = page.and_then(|page| page.take(HEAD).read_to_end(&mut head));
         let made = read.is_ok() && String::from_utf8_lossy(&head).contains(GENERATOR);
-        let names = [PAGE].into_iter().chain(Pair::FILES);
-        match names.map(|name| self.output.join(name)).find(|path| path.is_file()) {
-            Some(path) if !made => {
-                let expected = "a folder without it, or one with the index.html of an earlier demo";
-                Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
-            }
-            _ => Ok(()),
-        }
+        let names: Vec<&str> = [PAGE].into_iter().chain(Pair::FILES).collect();
+        paths::of_an_earlier_run(&self.output, &names, made, "the index.html of an earlier demo")
     }
 
     fn tell(&self, pair: &Pair, flown: &Flown, world: &str) -> Result<()> {

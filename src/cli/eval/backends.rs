@@ -28,8 +28,12 @@ pub(super) struct Opened {
 impl BackendList {
     /// Opens all of them, each once, and names them on standard error unless `quiet`.
     pub(super) fn open(&self, quiet: bool) -> Result<Vec<Opened>> {
-        let mut kinds = self.backend.clone();
-        kinds.dedup();
+        let mut kinds: Vec<BackendArg> = Vec::new();
+        for kind in &self.backend {
+            if !kinds.contains(kind) {
+                kinds.push(*kind);
+            }
+        }
         let args = |backend: Option<BackendArg>| {
             let adapter =
                 self.adapter.clone().filter(|_| kinds.len() < 2 || backend == Some(BackendArg::Gpu));
@@ -39,7 +43,7 @@ impl BackendList {
         if all.is_empty() {
             all.push(args(None));
         }
-        all.into_iter().map(|args| Ok(Opened { backend: args.open_unless(quiet)?, args })).collect()
+        all.into_iter().map(|args| Ok(Opened { backend: args.open(quiet)?, args })).collect()
     }
 }
 

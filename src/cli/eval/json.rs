@@ -12,8 +12,8 @@ use crate::eval::{BAD_PX, Bad, Class, ConfidenceScore, PairTime, Ratios, Row, Ta
 pub(super) struct TableFigures<'a> {
     viewsphere: &'static str,
     adapters: &'a [String],
-    /// The run to which ratios are.
-    baseline: &'a str,
+    /// The run to which ratios are; `null` without results.
+    baseline: Option<&'a str>,
     /// The endpoint error over which a pixel is bad.
     bad_px: f64,
     pairs: Vec<RowFigures<'a>>,
@@ -29,6 +29,8 @@ struct RowFigures<'a> {
     backend: &'a str,
     scored: usize,
     failed: usize,
+    /// Why a pair failed; `null` if it did not, and for rows of several pairs.
+    reason: Option<&'a str>,
     /// By class.
     errors: BTreeMap<&'static str, FlowErrorFigures>,
     confidence: Option<ConfidenceFigures>,
@@ -65,7 +67,7 @@ impl<'a> TableFigures<'a> {
         Self {
             viewsphere: env!("CARGO_PKG_VERSION"),
             adapters: &table.adapters,
-            baseline: &table.baseline,
+            baseline: table.baseline.as_deref(),
             bad_px: BAD_PX,
             pairs: rows(&table.pairs),
             sets: rows(&table.sets),
@@ -84,6 +86,7 @@ impl<'a> RowFigures<'a> {
             backend: &row.backend,
             scored: row.scored,
             failed: row.failed,
+            reason: row.reason.as_deref(),
             errors: Class::ALL.into_iter().filter_map(figures).collect(),
             confidence: row.score.confidence().map(ConfidenceFigures::of),
             time: row.time,

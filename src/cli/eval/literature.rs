@@ -69,8 +69,11 @@ fn yosemite(table: &Table) -> String {
         ]);
     }
     format!(
-        "{}Rows marked as quoted are published figures; the others are measured on {}, from two frames.\n",
+        "{}Rows marked as quoted are published figures; {}.\n",
         print::table(&lines),
-        table.adapters.join(" and ")
+        match table.adapters.as_slice() {
+            [] => "there are no others".to_owned(),
+            adapters => format!("the others are measured on {}, from two frames", adapters.join(" and ")),
+        }
     )
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use super::maps::Maps;
 use super::output::Output;
 use super::sets::results_in;
-use crate::cli::{Outcome, input};
+use crate::cli::Outcome;
 use crate::error::{Error, Result};
 use crate::eval::{PairResult, RunSpec};
 use crate::journal::Results;
@@ -45,16 +45,17 @@ impl Merge {
             }
         }
         let merged = merged.ok_or_else(|| Error::parameter("number of folders", 0, "at least 1"))?;
-        input::folder(&self.output)?;
+        let json = self.json.then_some(Path::new(super::STDOUT));
+        let baseline = self.baseline.as_ref().map(RunSpec::label);
+        let output =
+            Output { folder: Some(&self.output), json, csv: None, html: None, baseline, table: None };
+        output.check()?;
+        output.check_baseline(&merged)?;
         fs::create_dir_all(&self.output).map_err(|source| Error::io(&self.output, source))?;
-        let output = results_in(&self.output);
         let mut maps = Maps::beside(&self.output);
         let same = |folder: &Path| folder.canonicalize().ok() == self.output.canonicalize().ok();
         self.inputs.iter().filter(|folder| !same(folder)).try_for_each(|folder| maps.copy_from(folder))?;
-        merged.write(output)?;
-        let json = self.json.then_some(Path::new(super::STDOUT));
-        let baseline = self.baseline.as_ref().map(RunSpec::label);
-        Output { folder: Some(&self.output), json, csv: None, html: None, baseline, table: None }
-            .finish(&merged, &maps)
+        merged.write(results_in(&self.output))?;
+        output.finish(&merged, &maps)
     }
 }

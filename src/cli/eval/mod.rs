@@ -82,7 +82,7 @@ pub(super) struct Eval {
     /// Count only pixels where this image is brighter than mid-gray, or where this .npy plane is above 0.5
     #[arg(long, value_name = "FILE", requires = "truth")]
     mask: Option<PathBuf>,
-    /// Print the results as JSON, or write them to this file
+    /// Print the results as JSON, or write them to this .json file
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = STDOUT)]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -105,7 +105,8 @@ struct DataArgs {
     /// Algorithms [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "data")]
     algorithm: Vec<String>,
-    /// Presets; all stands for all of an algorithm [default: default]
+    /// Presets; all stands for all of an algorithm [default: default]. Without --algorithm, every algorithm that has one of
+    /// them is run
     #[arg(long, value_name = "PRESET,...", value_delimiter = ',', requires = "data")]
     preset: Vec<String>,
     /// Algorithms with presets and parameters, such as farneback-tv:fine:alpha=1.5, in place of or beside the two above
@@ -125,16 +126,17 @@ struct DataArgs {
     /// Timed repetitions of each pair, after one that is not timed; 0 times nothing
     #[arg(long, value_name = "N", default_value_t = 3, allow_negative_numbers = true, value_parser = whole_within(0_u32, 1000), requires = "data")]
     repeats: u32,
-    /// Run only part I of N of the pairs, I from 1 to N; `eval merge` combines the parts
+    /// Run only part I of N of the pairs, I from 1 to N; `eval merge` combines the parts, empty ones included
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, requires = "data")]
     shard: Shard,
-    /// Folder to keep the results in, created if missing
+    /// Folder to keep the results in, created if missing. Files of an earlier eval are replaced, other files of these names are
+    /// not
     #[arg(short, long, value_name = "FOLDER", requires = "data")]
     output: Option<PathBuf>,
-    /// Write all rows as comma-separated values to this file
+    /// Write all rows as comma-separated values to this .csv file
     #[arg(long, value_name = "FILE", requires = "data")]
     csv: Option<PathBuf>,
-    /// Write a self-contained page with error maps to this file
+    /// Write a self-contained page with error maps to this .html file
     #[arg(long, value_name = "FILE", requires = "data")]
     html: Option<PathBuf>,
     /// Pairs of each data set whose error maps are on the page

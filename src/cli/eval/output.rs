@@ -1,19 +1,23 @@
 //! The results in every format.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::json::TableFigures;
 use super::literature::NamedTable;
 use super::maps::Maps;
 use super::{page, text};
-use crate::cli::{Outcome, input, print};
+use crate::cli::place::{Allowed, Place};
+use crate::cli::{Outcome, input, paths, print};
 use crate::error::{Error, Result};
-use crate::eval::{BAD_PX, Ended, PairResult, Table};
-use crate::io::{check_writable, write_bytes};
+use crate::eval::{BAD_PX, PairResult, Table};
+use crate::io::write_bytes;
 use crate::journal::{Configuration, Results};
 
 /// The results file.
 pub(super) const RESULTS: &str = "results.jsonl";
+/// The files in a folder of results.
+const FILES: [&str; 4] = [RESULTS, "table.csv", "table.json", "report.html"];
 
 /// Where the results go beside standard output.
 pub(super) struct Output<'a> {
@@ -29,7 +33,7 @@ pub(super) struct Output<'a> {
 
 /// What all results of a journal have in common.
 pub(super) fn configuration(is_timed: bool) -> Result<Configuration> {
-    let settings = if is_timed { "with times" } else { "without times" };
+    let settings = if is_timed { "times, --repeats 1 or more" } else { "no times, --repeats 0" };
     Configuration::new(&("eval", BAD_PX, is_timed), settings.to_owned())
 }
 
@@ -47,14 +51,43 @@ impl Output<'_> {
 
     /// Checks that everything can be written, before anything is computed.
     pub(super) fn check(&self) -> Result<()> {
+        let mut single = Vec::new();
         for (flag, path) in self.files() {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            check_writable(folder.unwrap_or(Path::new(".")))?;
-            if path.is_dir() {
-                return Err(Error::parameter(flag, format_args!("{}, a folder", path.display()), "a file"));
+            let kind: &[&str] = match flag {
+                "--json" => &["json"],
+                "--csv" => &["csv"],
+                _ => &["html"],
+            };
+            single.push((flag, Allowed::file(kind).place(flag, path)?));
+        }
+        let in_folder = self.folder.map(|folder| FILES.map(|name| Place::File(folder.join(name))));
+        let results: Vec<_> = (in_folder.iter().flatten().map(|place| ("-o", Some(place))))
+            .chain(single.iter().map(|(flag, place)| (*flag, Some(place))))
+            .collect();
+        paths::are_apart(&results, [])?;
+        let single: Vec<_> = single.iter().map(|(flag, place)| (*flag, Some(place))).collect();
+        paths::check(&single, [])?;
+        match self.folder {
+            None => Ok(()),
+            Some(folder) => {
+                input::folder(folder)?;
+                let is_own = folder.join(RESULTS).is_file();
+                paths::of_an_earlier_run(folder, &FILES, is_own, "the results.jsonl of an earlier eval")
             }
         }
-        Ok(())
+    }
+
+    /// Checks that the baseline is among the results.
+    pub(super) fn check_baseline(&self, results: &Results<PairResult>) -> Result<()> {
+        let known: BTreeSet<&str> = results.all().map(|result| result.job.run.as_str()).collect();
+        match self.baseline.filter(|baseline| !known.contains(baseline)) {
+            None => Ok(()),
+            Some(baseline) => {
+                let known: Vec<&str> = known.into_iter().collect();
+                let expected = format!("one of the runs: {}", known.join(", "));
+                Err(Error::parameter("--baseline", baseline, expected))
+            }
+        }
     }
 
     /// Writes and prints the tables. A failed evaluation is an error, returned after everything is written.
@@ -83,10 +116,7 @@ impl Output<'_> {
         } else {
             print::text(&self.table.map_or_else(|| text::text(&table), |named| named.text(&table)))?;
         }
-        let mut failed = sorted.into_iter().filter_map(|result| match &result.ended {
-            Ended::Failed(reason) => Some((result.job.key(), reason)),
-            Ended::Scored { .. } => None,
-        });
+        let mut failed = sorted.into_iter().filter_map(|result| Some((result.job.key(), result.failure()?)));
         match failed.next() {
             None => Ok(Outcome::Done),
             Some((key, reason)) => {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::columns::{Best, CLASSES, CONFIDENCE, Column, ERRORS, cell, filled};
 use super::maps::{Maps, Shown};
+use super::text::{Failure, failures};
 use crate::error::Result;
 use crate::eval::{Bad, PairResult, Row, STEPS, Table};
 use crate::io::picture;
@@ -17,21 +18,30 @@ pub(super) fn html(table: &Table, results: &[&PairResult], maps: &Maps) -> Resul
         let name = rows[0].set.as_deref().unwrap_or_default();
         let own: Vec<&PairResult> = results.iter().filter(|result| result.job.set == name).copied().collect();
         let mut set = part(name, rows);
+        let rows: Vec<&Row> = table.pairs.iter().filter(|row| row.set.as_deref() == Some(name)).collect();
+        set.failures = failures(&rows)
+            .into_iter()
+            .map(|Failure { pair, runs, reason }| [pair.to_owned(), runs.join(", "), reason.to_owned()])
+            .collect();
         for pair in own.chunk_by(|a, b| a.job.pair == b.job.pair) {
-            set.pairs.extend(images(table, pair, maps)?);
+            if maps.has(name, &pair[0].job.pair, Shown::FirstFrame) {
+                set.pairs.extend(images(&rows, pair, maps)?);
+            }
         }
         sets.push(set);
     }
     if sets.len() > 1 {
         sets.insert(0, part("all data sets", &table.total));
     }
-    let about = format!(
-        "Computed on {} by viewsphere {}. Figures are over the pixels of all pairs; × is the geometric mean over the pairs of the \
-         ratio to {}. The best of each column is bold.",
-        table.adapters.join(" and "),
-        env!("CARGO_PKG_VERSION"),
-        table.baseline
-    );
+    let by = format!("viewsphere {}", env!("CARGO_PKG_VERSION"));
+    let about = match &table.baseline {
+        None => format!("No results, by {by}."),
+        Some(baseline) => format!(
+            "Computed on {} by {by}. Figures are over the pixels of all pairs; × is the geometric mean over the pairs of the \
+             ratio to {baseline}. The best of each column is bold.",
+            table.adapters.join(" and "),
+        ),
+    };
     Ok(EvalPage { about, sets }.html())
 }
 
@@ -57,6 +67,7 @@ fn part(name: &str, rows: &[Row]) -> EvalSet {
         about: counted(pairs, "pair"),
         tables: tables.into_iter().filter_map(|(about, columns)| grid(about, columns, &rows)).collect(),
         curves: rows.iter().filter_map(|row| curves(row)).collect(),
+        failures: Vec::new(),
         pairs: Vec::new(),
     }
 }
@@ -101,8 +112,8 @@ fn curves(row: &Row) -> Option<EvalCurves> {
     })
 }
 
-/// The images of a pair; `None` if there are none.
-fn images(table: &Table, results: &[&PairResult], maps: &Maps) -> Result<Option<EvalPair>> {
+/// The images of a pair, whose set has these rows; `None` if there are none.
+fn images(rows: &[&Row], results: &[&PairResult], maps: &Maps) -> Result<Option<EvalPair>> {
     let Some(first) = results.first() else { return Ok(None) };
     let (set, pair) = (&first.job.set, &first.job.pair);
     let mut shown = vec![
@@ -114,12 +125,11 @@ fn images(table: &Table, results: &[&PairResult], maps: &Maps) -> Result<Option<
         ),
     ];
     for result in results {
-        let is_its = |row: &&Row| {
-            row.set.as_ref() == Some(set)
-                && row.pair.as_ref() == Some(pair)
+        let is_its = |row: &&&Row| {
+            row.pair.as_ref() == Some(pair)
                 && (&row.run, &row.backend) == (&result.job.run, &result.job.backend)
         };
-        let row = table.pairs.iter().find(is_its).filter(|row| row.scored > 0);
+        let row = rows.iter().find(is_its).filter(|row| row.scored > 0);
         let Some(row) = row else { continue };
         let caption = format!("{}: {} px, {}°", row.name, cell(row, &ERRORS[0]), cell(row, &ERRORS[2]));
         shown.push((Shown::Error(&result.job), format!("Error map of {}", row.name), caption));

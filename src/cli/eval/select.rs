@@ -10,8 +10,8 @@ use crate::eval::data_set::{DataSet, PairFiles};
 pub(super) enum Choice {
     /// A name, `SET/NAME` or `NAME`, in which `*` stands for any text.
     Name(String),
-    /// The numbers of first frames, the last one excluded.
-    Numbers { first: u64, last: u64, step: u64 },
+    /// The numbers of first frames, the last one excluded, and the text that names them.
+    Numbers { first: u64, last: u64, step: u64, text: String },
 }
 
 impl FromStr for Choice {
@@ -31,7 +31,8 @@ impl FromStr for Choice {
         };
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
         let (first, last, step) = (number(first)?, number(last)?, number(step)?);
-        if first < last && step > 0 { Ok(Self::Numbers { first, last, step }) } else { Err(wrong()) }
+        let text = text.trim().to_owned();
+        if first < last && step > 0 { Ok(Self::Numbers { first, last, step, text }) } else { Err(wrong()) }
     }
 }
 
@@ -39,16 +40,16 @@ impl Choice {
     fn takes(&self, set: &str, pair: &PairFiles) -> bool {
         match self {
             Self::Name(name) => matches(name, &pair.name) || matches(name, &format!("{set}/{}", pair.name)),
-            Self::Numbers { first, last, step } => pair.number.is_some_and(|number| {
+            Self::Numbers { first, last, step, .. } => pair.number.is_some_and(|number| {
                 (*first..*last).contains(&number) && (number - first).is_multiple_of(*step)
             }),
         }
     }
 
-    fn text(&self) -> String {
+    /// The choice as it was given.
+    fn text(&self) -> &str {
         match self {
-            Self::Name(name) => name.clone(),
-            Self::Numbers { first, last, step } => format!("{first}..{last}:{step}"),
+            Self::Name(text) | Self::Numbers { text, .. } => text,
         }
     }
 }
@@ -121,7 +122,8 @@ mod tests {
     fn what_takes_nothing_is_an_error() {
         for (choice, words) in [
             ("x", "--pairs is x, expected pairs of the data sets, such as a/000"),
-            ("30..40", "--pairs is 30..40:1"),
+            ("30..40", "--pairs is 30..40, expected"),
+            ("30..40:2", "--pairs is 30..40:2, expected"),
             ("4..4", "LAST above FIRST"),
             ("0..4:0", "STEP above 0"),
             ("a..b", "FIRST..LAST"),

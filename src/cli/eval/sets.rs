@@ -9,6 +9,8 @@ use super::literature::NamedTable;
 use super::output::{Output, RESULTS};
 use super::select::select;
 use super::sink::Sink;
+use crate::benchmark::pair_time;
+use crate::cli::args::named_by_flags;
 use crate::cli::{Outcome, print};
 use crate::error::{Error, Result};
 use crate::eval::data_set::{self, DataSet, LoadedPair, PairFiles};
@@ -27,10 +29,15 @@ pub(super) struct Task {
 pub(super) fn run(args: &DataArgs, output: &Output<'_>) -> Result<Outcome> {
     let runs = runs(args)?;
     if let Some(run) = runs.iter().find(|run| run.algorithm().has_memory() && !args.quiet) {
-        print::note(format_args!("{run}: each pair is computed alone, as the first one of a stream"));
+        print::note(print::alone(run.label()));
     }
     output.check()?;
-    let tasks = args.shard.part(tasks(args)?);
+    let tasks = tasks(args)?;
+    let count = tasks.len();
+    let tasks = args.shard.part(tasks);
+    if tasks.is_empty() && !args.quiet {
+        print::empty_shard(args.shard, counted(count, "pair"));
+    }
     let mut backends = args.backend.open(args.quiet)?;
     let mut sink = Sink::open(args, output)?;
     sink.check(&tasks, &backends)?;
@@ -46,7 +53,7 @@ pub(super) fn run(args: &DataArgs, output: &Output<'_>) -> Result<Outcome> {
     let ran = (tasks.iter().zip(&pending))
         .filter(|(_, pending)| !pending.is_empty())
         .try_for_each(|(task, pending)| evaluate(task, pending, &mut backends, args.repeats, &mut sink));
-    sink.bar.finish_and_clear();
+    sink.progress.finish();
     ran?;
     let (results, maps) = sink.close()?;
     output.finish(&results, &maps)
@@ -56,12 +63,14 @@ pub(super) fn run(args: &DataArgs, output: &Output<'_>) -> Result<Outcome> {
 fn runs(args: &DataArgs) -> Result<Vec<RunSpec>> {
     let mut runs = args.run.clone();
     if !(args.algorithm.is_empty() && args.preset.is_empty()) || runs.is_empty() {
-        let all: Vec<String> =
-            RunSpec::defaults().iter().map(|run| run.algorithm().name().to_owned()).collect();
-        let algorithms = if args.algorithm.is_empty() { &all } else { &args.algorithm };
         let default = [if args.table.is_some() { "all" } else { "default" }.to_owned()];
         let presets = if args.preset.is_empty() { &default[..] } else { &args.preset };
-        runs.extend(RunSpec::combinations(algorithms, presets)?);
+        let found = match args.algorithm.is_empty() {
+            true => RunSpec::with_presets(presets),
+            false => RunSpec::combinations(&args.algorithm, presets),
+        };
+        let flags = [("algorithm", "--algorithm"), ("preset", "--preset")];
+        runs.extend(found.map_err(|error| named_by_flags(error, &flags))?);
     }
     let mut seen = BTreeSet::new();
     runs.retain(|run| seen.insert(run.label().to_owned()));
@@ -161,9 +170,14 @@ fn score(
     repeats: u32,
 ) -> Result<(Ended, FlowField)> {
     let frames = [pair.frames[0].frame()?, pair.frames[1].frame()?];
-    let found = estimate(&on.backend, run.algorithm(), [&frames[0], &frames[1]], repeats)?;
+    let frames = [&frames[0], &frames[1]];
+    let found = estimate(&on.backend, run.algorithm(), frames)?;
     let score = Score::new(&pair.truth, classes, &found.flow, Some(&found.confidence))?;
-    Ok((Ended::Scored { score, time: found.time }, found.flow))
+    let time = match repeats {
+        0 => None,
+        _ => Some(pair_time(&on.backend, run.algorithm(), frames, repeats)?),
+    };
+    Ok((Ended::Scored { score, time }, found.flow))
 }
 
 /// The path of the results in a folder.

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::cli::{Outcome, input, print};
+use crate::cli::place::Allowed;
+use crate::cli::{Outcome, input, paths, print};
 use crate::error::{Error, Result};
 use crate::eval::{FlowError, flow_error};
 use crate::io::{read_flow, write_bytes};
@@ -50,6 +51,11 @@ impl From<FlowError> for FlowErrorFigures {
 
 impl Single<'_> {
     pub(super) fn run(&self) -> Result<Outcome> {
+        if let Some(path) = self.json.filter(|path| *path != Path::new(super::STDOUT)) {
+            let place = Allowed::file(&["json"]).place("--json", path)?;
+            let read = [self.truth, self.estimate].into_iter().chain(self.mask);
+            paths::check(&[("--json", Some(&place))], read)?;
+        }
         let truth = read_flow(self.truth)?;
         let estimate = read_flow(self.estimate)?;
         input::same_size(self.estimate, estimate.size, truth.size, self.truth)?;
@@ -61,13 +67,8 @@ impl Single<'_> {
             return Err(Error::format(self.estimate, "number of pixels compared", found, "at least 1"));
         }
         match self.json {
-            Some(path) if path == Path::new("-") => print::json(&FlowErrorFigures::from(error))?,
+            Some(path) if path == Path::new(super::STDOUT) => print::json(&FlowErrorFigures::from(error))?,
             Some(path) => {
-                input::spared(
-                    "--json",
-                    Some(path),
-                    [self.truth, self.estimate].into_iter().chain(self.mask),
-                )?;
                 write_bytes(path, (print::pretty(&FlowErrorFigures::from(error))? + "\n").as_bytes())?;
             }
             None => print::text(&text(&error))?,

@@ -1,8 +1,7 @@
 //! Where results go: the journal, the images of the page, and the progress on standard error.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
-
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::DataArgs;
 use super::backends::Opened as OpenedBackend;
@@ -10,7 +9,8 @@ use super::columns::{ERRORS, cell};
 use super::maps::{Maps, Shown};
 use super::output::{Output, RESULTS, configuration};
 use super::sets::Task;
-use crate::cli::{input, print};
+use crate::cli::print;
+use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
 use crate::eval::data_set::LoadedPair;
 use crate::eval::{Ended, Job, PairResult, Table, gray_levels};
@@ -31,7 +31,7 @@ pub(super) struct Sink {
     journal: Option<Journal<PairResult>>,
     pub(super) results: Results<PairResult>,
     pub(super) maps: Maps,
-    pub(super) bar: ProgressBar,
+    pub(super) progress: Progress,
     quiet: bool,
     done: usize,
     count: usize,
@@ -42,7 +42,6 @@ impl Sink {
         let configuration = configuration(args.repeats > 0)?;
         let (path, journal, results, maps) = match output.folder {
             Some(folder) => {
-                input::folder(folder)?;
                 let path = folder.join(RESULTS);
                 let Opened { journal, results, repaired } = Journal::open(&path, &configuration)?;
                 if repaired {
@@ -61,7 +60,7 @@ impl Sink {
             journal,
             results,
             maps,
-            bar: ProgressBar::hidden(),
+            progress: Progress::new(None, "evaluations", true),
             quiet: args.quiet,
             done: 0,
             count: 0,
@@ -79,12 +78,11 @@ impl Sink {
                 return Err(Error::format(&self.path, "adapter of its results", other, expected));
             }
         }
+        let done = self.results.all().filter(|result| !result.is_failure());
+        let by_pair: HashMap<(&str, &str), &PairResult> =
+            done.map(|result| ((&*result.job.set, &*result.job.pair), result)).collect();
         for task in tasks {
-            let is_own =
-                |result: &&PairResult| result.job.set == task.set && result.job.pair == task.files.name;
-            let Some(result) = self.results.all().filter(|result| !result.is_failure()).find(is_own) else {
-                continue;
-            };
+            let Some(result) = by_pair.get(&(&*task.set, &*task.files.name)) else { continue };
             // A file that is missing now fails the runs that are left, not those that are done.
             let Ok(found) = task.files.digest() else { continue };
             if found != result.input {
@@ -105,9 +103,11 @@ impl Sink {
                 counted(all, "evaluation"),
                 counted(pairs, "pair")
             ));
-            let style = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left, {msg}");
-            self.bar = ProgressBar::new(count as u64)
-                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            // Without a terminal each result is a line, so that there are none in between.
+            let bar = Progress::new(Some(count as u64), "evaluations", false);
+            if bar.is_bar() {
+                self.progress = bar;
+            }
         }
     }
 
@@ -121,9 +121,9 @@ impl Sink {
         let name = format!("{set}/{pair} {run} on {backend}");
         match &result.ended {
             // A failure is told in any case.
-            Ended::Failed(reason) => self.bar.suspend(|| print::note(format_args!("{name}: {reason}"))),
+            Ended::Failed(reason) => self.progress.aside(|| print::note(format_args!("{name}: {reason}"))),
             Ended::Scored { .. } if self.quiet => (),
-            Ended::Scored { .. } if !self.bar.is_hidden() => self.bar.set_message(name),
+            Ended::Scored { .. } if self.progress.is_bar() => self.progress.tell(name),
             Ended::Scored { .. } => {
                 let table = Table::of(&[&result], None);
                 let figures = table.pairs.first().map(|row| {
@@ -134,7 +134,7 @@ impl Sink {
                 print::note(format_args!("{done}/{count} {name}: {}", figures.unwrap_or_default()));
             }
         }
-        self.bar.inc(1);
+        self.progress.inc();
         self.results.add(&self.path, result)
     }
 

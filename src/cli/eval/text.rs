@@ -10,16 +10,17 @@ const MOST_PAIRS: usize = 8;
 
 /// The tables for a terminal.
 pub(super) fn text(table: &Table) -> String {
-    let mut text = format!(
-        "on {}; × is the geometric mean of ratios to {}\n",
-        table.adapters.join(" and "),
-        table.baseline
-    );
+    let Some(baseline) = &table.baseline else { return "no results".to_owned() };
+    let mut text =
+        format!("on {}; × is the geometric mean of ratios to {baseline}\n", table.adapters.join(" and "));
     for set in table.sets.chunk_by(|a, b| a.set == b.set) {
         let name = set[0].set.as_deref().unwrap_or_default();
         text += &part(name, set);
         let pairs: Vec<&Row> = table.pairs.iter().filter(|row| row.set == set[0].set).collect();
         text += &by_pair(&pairs);
+        for Failure { pair, runs, reason } in failures(&pairs) {
+            text += &format!("failed  {pair} with {}: {reason}\n", runs.join(", "));
+        }
     }
     if table.sets.iter().any(|row| row.set != table.sets[0].set) {
         text += &part("total", &table.total);
@@ -80,19 +81,19 @@ fn by_pair(rows: &[&Row]) -> String {
 }
 
 /// All rows as comma-separated values below a header: pairs, then sets, then the total. `*` stands for all pairs or sets; an
-/// undefined figure is an empty cell.
+/// undefined figure is an empty cell, and `reason` tells why a pair failed.
 pub(super) fn csv(table: &Table) -> String {
     let columns: Vec<&Column> = ERRORS.iter().chain(&CLASSES).chain(&CONFIDENCE).collect();
     let names = columns.iter().map(|column| column.name);
-    let mut text =
-        ["set", "pair", "run", "backend", "pairs"].into_iter().chain(names).collect::<Vec<_>>().join(",")
-            + "\n";
+    let mut text = ["set", "pair", "run", "backend", "pairs"]
+        .into_iter()
+        .chain(names)
+        .chain(["reason"])
+        .collect::<Vec<_>>()
+        .join(",")
+        + "\n";
     for row in table.pairs.iter().chain(&table.sets).chain(&table.total) {
-        let quoted = |name: &Option<String>| {
-            let name = name.as_deref().unwrap_or("*");
-            let is_plain = !name.contains([',', '"', '\n', '\r']);
-            if is_plain { name.to_owned() } else { format!("\"{}\"", name.replace('"', "\"\"")) }
-        };
+        let quoted = |name: &Option<String>| cell_of(name.as_deref().unwrap_or("*"));
         let keys = [
             quoted(&row.set),
             quoted(&row.pair),
@@ -100,10 +101,39 @@ pub(super) fn csv(table: &Table) -> String {
             row.backend.clone(),
             row.scored.to_string(),
         ];
+        let reason = row.reason.as_ref().map(|reason| cell_of(reason)).unwrap_or_default();
         let figures = columns
             .iter()
             .map(|column| (column.value)(row).map(|value| value.to_string()).unwrap_or_default());
-        text += &(keys.into_iter().chain(figures).collect::<Vec<_>>().join(",") + "\n");
+        text += &(keys.into_iter().chain(figures).chain([reason]).collect::<Vec<_>>().join(",") + "\n");
     }
     text
+}
+
+/// A text as a cell of comma-separated values.
+fn cell_of(text: &str) -> String {
+    let is_plain = !text.contains([',', '"', '\n', '\r']);
+    if is_plain { text.to_owned() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
+}
+
+/// Runs that failed on a pair for one reason.
+pub(super) struct Failure<'a> {
+    pub(super) pair: &'a str,
+    pub(super) runs: Vec<&'a str>,
+    pub(super) reason: &'a str,
+}
+
+/// What failed among the rows of a set's pairs: a pair that cannot be read is told once, not for each run.
+pub(super) fn failures<'a>(rows: &[&'a Row]) -> Vec<Failure<'a>> {
+    let mut all: Vec<Failure<'a>> = Vec::new();
+    for row in rows {
+        let (Some(pair), Some(reason)) = (row.pair.as_deref(), row.reason.as_deref()) else { continue };
+        // The rows of a pair stand together.
+        let own = all.iter_mut().rev().take_while(|known| known.pair == pair);
+        match own.into_iter().find(|known| known.reason == reason) {
+            Some(known) => known.runs.push(&row.name),
+            None => all.push(Failure { pair, runs: vec![&row.name], reason }),
+        }
+    }
+    all
 }

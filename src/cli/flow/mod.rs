@@ -2,12 +2,11 @@
 
 mod report;
 pub(super) mod source;
-pub(super) mod targets;
+mod targets;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::ProgressBar;
 
 use self::report::Report;
 use self::source::Source;
@@ -15,8 +14,8 @@ pub(super) use self::targets::gray;
 use self::targets::{FormatArg, Pair, Targets};
 use super::backend::BackendArgs;
 use super::flow_args::FlowArgs;
-use super::progress::progress;
-use super::{Outcome, input};
+use super::progress::Progress;
+use super::{Outcome, input, print};
 use crate::engine::{Config, Engine, FrameInputs};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, Plane, Size};
@@ -81,6 +80,9 @@ pub(super) struct Flow {
     /// Size of raw gray frames, one byte per pixel, on standard input
     #[arg(long, value_name = "WxH")]
     raw: Option<Size>,
+    /// Print no progress and no notes
+    #[arg(long)]
+    quiet: bool,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -102,16 +104,8 @@ impl Flow {
         let mut source = Source::open(&self.inputs, self.raw)?;
         let single = self.inputs.len() == 2 && source.len() == Some(2);
         self.check(single)?;
-        for (flag, result) in [
-            ("-o", &self.output),
-            ("--color", &self.color),
-            ("--arrows", &self.arrows),
-            ("--confidence", &self.confidence),
-        ] {
-            let given = [&self.init, &self.mask].into_iter().flatten().map(PathBuf::as_path);
-            // For two images a folder may be an output too, as the files in it get other names.
-            let pictures = self.inputs.iter().map(Path::new);
-            input::spared(flag, result.as_deref().filter(|path| !path.is_dir()), pictures.chain(given))?;
+        if source.len() == Some(2) && algorithm.has_memory() && !self.quiet {
+            print::note(print::alone(algorithm.name()));
         }
         let targets = Targets::new(self, single)?;
         let images = source.first_two()?;
@@ -129,10 +123,11 @@ impl Flow {
             warm_start: self.warm_start,
             ..Config::default()
         };
-        let mut engine = Engine::new(self.backend.open()?, size, &config)?;
-        let bar = progress(source.len().map(|frames| frames.saturating_sub(1)), "pairs", 1);
-        let done = compute(&mut engine, source, images, given, targets, &bar);
-        bar.finish_and_clear();
+        let mut engine = Engine::new(self.backend.open(self.quiet)?, size, &config)?;
+        let pairs = source.len().map(|frames| frames.saturating_sub(1));
+        let progress = Progress::of_sequence(pairs, "pairs", 1, self.quiet);
+        let done = compute(&mut engine, source, images, given, targets, &progress);
+        progress.finish();
         let report = done?;
         if !self.writes_to_stdout() {
             report.print(self.json, self.outputs().iter().all(|path| path.is_none()))?;
@@ -176,7 +171,7 @@ fn compute(
     [mut first, mut second]: [Image; 2],
     given: Given,
     mut targets: Targets,
-    bar: &ProgressBar,
+    progress: &Progress,
 ) -> Result<Report> {
     let mut report = Report::new(engine.adapter(), first.size);
     let certainty = given.mask.as_ref();
@@ -189,7 +184,7 @@ fn compute(
             targets.write(report.pairs, &Pair { first: &first, flow, confidence: output.confidence })?;
             report.add(flow);
         }
-        bar.inc(1);
+        progress.inc();
         initial_flow = None;
         std::mem::swap(&mut first, &mut second);
         if !source.next(&mut second)? {

@@ -1,16 +1,15 @@
 //! The outputs and their formats.
 
-use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use super::Flow;
-use crate::cli::{input, print};
+use crate::cli::paths;
+use crate::cli::place::{Allowed, Folder, Place, extension, is_folder};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, PixelFormat, Plane};
-use crate::io::{check_writable, flo, kitti, npy, picture, write_bytes};
+use crate::io::{flo, kitti, npy, picture};
 use crate::report::{arrows, colour_wheel};
 
 /// Pixels between arrows.
@@ -52,34 +51,6 @@ pub(super) struct Pair<'a> {
     pub(super) confidence: Option<&'a Plane>,
 }
 
-/// The destination of one kind of result.
-pub(in crate::cli) enum Place {
-    Stdout,
-    File(PathBuf),
-    Folder(PathBuf, &'static str),
-}
-
-impl Place {
-    /// Creates the folder, if it is one.
-    pub(in crate::cli) fn make_folder(&self) -> Result<()> {
-        match self {
-            Self::Folder(folder, _) => fs::create_dir_all(folder).map_err(|source| Error::io(folder, source)),
-            Self::File(_) | Self::Stdout => Ok(()),
-        }
-    }
-
-    /// Writes the result of pair `number`.
-    pub(in crate::cli) fn write(&self, number: u64, bytes: &[u8]) -> Result<()> {
-        match self {
-            Self::Stdout => print::bytes(bytes),
-            Self::File(path) => write_bytes(path, bytes),
-            Self::Folder(folder, extension) => {
-                write_bytes(folder.join(format!("{number:06}.{extension}")), bytes)
-            }
-        }
-    }
-}
-
 enum Kind {
     Flow(FormatArg),
     Color,
@@ -89,7 +60,8 @@ enum Kind {
 
 /// The destinations of all results.
 pub(super) struct Targets {
-    places: Vec<(Kind, Place)>,
+    /// Each with its flag.
+    places: Vec<(&'static str, Kind, Place)>,
     scale: Option<f32>,
     colours: bool,
 }
@@ -99,25 +71,28 @@ impl Targets {
     pub(super) fn new(args: &Flow, single: bool) -> Result<Self> {
         let mut places = Vec::new();
         if let Some(path) = &args.output {
-            places.push(flow_place(path, args.format, single)?);
+            let (format, place) = flow_place(path, args.format, single)?;
+            places.push(("-o", Kind::Flow(format), place));
         } else if let Some(format) = args.format {
             return Err(Error::parameter("--format", format.extension(), "an output (-o) beside it"));
         }
-        for (path, kind) in
-            [(&args.color, Kind::Color), (&args.arrows, Kind::Arrows { gain: args.arrow_gain })]
-        {
-            if let Some(path) = path {
-                places.push((kind, place(path, single, "png", &["png"])?));
-            }
+        let png = allowed(single, "png", &["png"]);
+        if let Some(path) = &args.color {
+            places.push(("--color", Kind::Color, png.place("--color", path)?));
+        }
+        if let Some(path) = &args.arrows {
+            places.push(("--arrows", Kind::Arrows { gain: args.arrow_gain }, png.place("--arrows", path)?));
         }
         if let Some(path) = &args.confidence {
-            let place = place(path, single, "npy", &["npy", "png"])?;
+            let place = allowed(single, "npy", &["npy", "png"]).place("--confidence", path)?;
             let npy = matches!(&place, Place::Folder(..)) || extension(path) == "npy";
-            places.push((Kind::Confidence { npy }, place));
+            places.push(("--confidence", Kind::Confidence { npy }, place));
         }
-        let targets = Self { places, scale: args.scale, colours: args.color.is_some() };
-        check_places(targets.places.iter().map(|(_, place)| place))?;
-        Ok(targets)
+        let results: Vec<_> = places.iter().map(|(flag, _, place)| (*flag, Some(place))).collect();
+        let read = args.inputs.iter().map(Path::new);
+        let given = [&args.init, &args.mask].into_iter().flatten().map(PathBuf::as_path);
+        paths::check(&results, read.chain(given))?;
+        Ok(Self { places, scale: args.scale, colours: args.color.is_some() })
     }
 
     /// The displacement shown in full colour, if colour images were written.
@@ -127,14 +102,14 @@ impl Targets {
 
     /// Creates the folders.
     pub(super) fn make_folders(&self) -> Result<()> {
-        self.places.iter().try_for_each(|(_, place)| place.make_folder())
+        self.places.iter().try_for_each(|(.., place)| place.make_folder())
     }
 
     /// Writes the results of pair `number`.
     pub(super) fn write(&mut self, number: u64, pair: &Pair<'_>) -> Result<()> {
         // Encode everything before writing, so that an error leaves no file behind.
         let mut contents = Vec::new();
-        for (kind, _) in &self.places {
+        for (_, kind, _) in &self.places {
             contents.push(match kind {
                 Kind::Flow(format) => format.encode(pair.flow)?,
                 Kind::Color => {
@@ -154,37 +129,8 @@ impl Targets {
                 }
             });
         }
-        self.places.iter().zip(contents).try_for_each(|((_, place), bytes)| place.write(number, &bytes))
+        self.places.iter().zip(contents).try_for_each(|((.., place), bytes)| place.write(number, &bytes))
     }
-}
-
-/// Checks that the folders are writable or can be created, and that no two results share a file.
-pub(in crate::cli) fn check_places<'a>(places: impl Iterator<Item = &'a Place>) -> Result<()> {
-    let mut seen = Vec::new();
-    for place in places {
-        match place {
-            Place::Folder(folder, _) => input::folder(folder)?,
-            Place::File(path) => {
-                let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-                let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
-                if !special {
-                    check_writable(parent.unwrap_or(Path::new(".")))?;
-                }
-            }
-            Place::Stdout => {}
-        }
-        let name = match place {
-            Place::Stdout => PathBuf::from("-"),
-            Place::File(path) => path.clone(),
-            Place::Folder(folder, extension) => folder.join(format!("NNNNNN.{extension}")),
-        };
-        if seen.contains(&name) {
-            let expected = "a place of its own for each result";
-            return Err(Error::parameter("output", format_args!("{} twice", name.display()), expected));
-        }
-        seen.push(name);
-    }
-    Ok(())
 }
 
 /// A plane of 0 to 1 as a gray image, black to white.
@@ -194,64 +140,31 @@ pub(in crate::cli) fn gray(plane: &Plane) -> Image {
     Image { size: plane.size, format: PixelFormat::Gray8, data }
 }
 
-fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(Kind, Place)> {
-    if path == Path::new("-") {
-        let format = format.unwrap_or(FormatArg::Flo);
-        if !single && format == FormatArg::Kitti {
-            return Err(Error::parameter(
-                "--format",
-                "kitti",
-                "flo or npy for a sequence to standard output",
-            ));
-        }
-        return Ok((Kind::Flow(format), Place::Stdout));
+/// The place and the format of the flow.
+fn flow_place(path: &Path, format: Option<FormatArg>, single: bool) -> Result<(FormatArg, Place)> {
+    let in_folder = format.unwrap_or(FormatArg::Flo);
+    if path == Path::new("-") && !single && in_folder == FormatArg::Kitti {
+        return Err(Error::parameter("--format", "kitti", "flo or npy for a sequence to standard output"));
     }
-    if single && !is_folder(path) && format.is_some() {
-        let format = format.unwrap_or(FormatArg::Flo);
-        return Ok((Kind::Flow(format), Place::File(path.to_owned())));
-    }
-    let place = place(path, single, format.unwrap_or(FormatArg::Flo).extension(), &["flo", "png", "npy"])?;
+    let is_named_otherwise = single && format.is_some() && path != Path::new("-") && !is_folder(path);
+    let place = match is_named_otherwise {
+        true => Place::File(path.to_owned()),
+        false => Allowed { stdout: true, ..allowed(single, in_folder.extension(), &["flo", "png", "npy"]) }
+            .place("-o", path)?,
+    };
     let by_name = match extension(path).as_str() {
         "png" => FormatArg::Kitti,
         "npy" => FormatArg::Npy,
         _ => FormatArg::Flo,
     };
-    let format = if matches!(place, Place::File(_)) { by_name } else { format.unwrap_or(FormatArg::Flo) };
-    Ok((Kind::Flow(format), place))
+    let is_file = matches!(place, Place::File(_));
+    Ok((format.unwrap_or(if is_file { by_name } else { FormatArg::Flo }), place))
 }
 
-/// A file with one of the given extensions, or a folder of files with one extension.
-pub(in crate::cli) fn place(
-    path: &Path,
-    single: bool,
-    in_folder: &'static str,
-    as_file: &[&str],
-) -> Result<Place> {
-    let extension = extension(path);
-    if single && path == Path::new("-") {
-        return Ok(Place::Stdout);
+/// For one pair a file, or a folder that is marked as one; for a sequence a folder.
+fn allowed(single: bool, in_folder: &'static str, files: &'static [&'static str]) -> Allowed {
+    match single {
+        true => Allowed { files, folder: Folder::Marked(in_folder), stdout: true },
+        false => Allowed::of_sequence(in_folder),
     }
-    if is_folder(path) {
-        return Ok(Place::Folder(path.to_owned(), in_folder));
-    }
-    if single {
-        if !as_file.contains(&extension.as_str()) {
-            let found = if extension.is_empty() { "missing".to_owned() } else { format!(".{extension}") };
-            let expected = as_file.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" or ");
-            return Err(Error::format(path, "extension", found, expected));
-        }
-        return Ok(Place::File(path.to_owned()));
-    }
-    if path == Path::new("-") || as_file.contains(&extension.as_str()) {
-        return Err(Error::parameter("output", path.display(), "a folder, as the input is a sequence"));
-    }
-    Ok(Place::Folder(path.to_owned(), in_folder))
-}
-
-fn is_folder(path: &Path) -> bool {
-    path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/")
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase()
 }

@@ -21,7 +21,8 @@ use self::setup::SetupArgs;
 use self::video::Video;
 use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
-use super::{Outcome, input, print};
+use super::place::Place;
+use super::{Outcome, input, paths, print};
 use crate::backend::Backend;
 use crate::error::Result;
 use crate::frame::Size;
@@ -143,6 +144,7 @@ impl Fly {
         let course = self.course()?;
         input::folder(&self.output)?;
         outputs::spare(&self.output)?;
+        self.check_paths()?;
         let backends = match config.sensor {
             Sensor::Images => self.backend.open_pair(self.quiet)?,
             _ => [Backend::Cpu, Backend::Cpu],
@@ -173,11 +175,15 @@ impl Fly {
 
     fn course(&self) -> Result<Course> {
         let Some(path) = &self.world_file else { return self.world.course(self.seed) };
-        let course = file::read(path)?;
-        for name in FILES {
-            input::spared("-o", Some(&self.output.join(name)), [path.as_path()])?;
-        }
-        Ok(course)
+        file::read(path)
+    }
+
+    /// Checks that the world's file is none of the flight's.
+    fn check_paths(&self) -> Result<()> {
+        let own = FILES.map(|name| Place::File(self.output.join(name)));
+        let saved = self.save_world.clone().map(Place::File);
+        let results = own.iter().map(|own| ("-o", Some(own))).chain([("--save-world", saved.as_ref())]);
+        paths::are_apart(&results.collect::<Vec<_>>(), self.world_file.as_deref())
     }
 
     /// Flies to the end, and writes the video if there is one.

@@ -11,8 +11,8 @@ use super::setup::SetupArgs;
 use super::timing::Timing;
 use super::{cues, log, measured, shown};
 use crate::backend::Backend;
-use crate::cli::print;
-use crate::error::{Error, Result};
+use crate::cli::{paths, print};
+use crate::error::Result;
 use crate::io::{remove, write_bytes};
 use crate::report::flight::FlightReport;
 use crate::sim::flight::{Flight, Summary};
@@ -28,15 +28,8 @@ pub(super) const FILES: [&str; 5] = [LOG, TIMING, PAGE, VIDEO, PICTURE];
 pub(super) fn spare(folder: &Path) -> Result<()> {
     let begins = |line: String| line.starts_with("{\"viewsphere\":");
     let log = File::open(folder.join(LOG)).map(BufReader::new);
-    let flown = log.is_ok_and(|log| log.lines().next().is_some_and(|line| line.is_ok_and(begins)));
-    let there = FILES.map(|name| folder.join(name)).into_iter().find(|path| path.is_file());
-    match there {
-        Some(path) if !flown => {
-            let expected = "a folder without it, or one with the flight.jsonl of an earlier flight";
-            Err(Error::parameter("-o", format_args!("a folder with {}", path.display()), expected))
-        }
-        _ => Ok(()),
-    }
+    let is_own = log.is_ok_and(|log| log.lines().next().is_some_and(|line| line.is_ok_and(begins)));
+    paths::of_an_earlier_run(folder, &FILES, is_own, "the flight.jsonl of an earlier flight")
 }
 
 /// A completed flight.

@@ -15,6 +15,7 @@ use self::gyro::{GyroArgs, Numbers};
 use self::horizon::Horizon;
 use self::summary::RunSummary;
 use self::video::Video;
+use super::args::named_by_flags;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
 use super::flow_args::FlowArgs;
@@ -132,6 +133,16 @@ pub(super) struct Run {
     backend: BackendArgs,
 }
 
+/// The flags by the parameters that they set.
+const FLAGS: [(&str, &str); 6] = [
+    ("within_s", "--within-s"),
+    ("aside_s", "--aside-s"),
+    ("sectors", "--sectors"),
+    ("camera_from_gyro", "--camera-from-gyro"),
+    ("bias_rad_s", "--gyro-bias"),
+    ("time_offset_s", "--gyro-offset-s"),
+];
+
 impl Run {
     pub(super) fn run(&self) -> Result<Outcome> {
         if !self.start_s.is_finite() {
@@ -139,9 +150,8 @@ impl Run {
         }
         let files = [&self.camera, &self.gyro.gyro, &self.times, &self.mask].into_iter().flatten();
         let read = self.inputs.iter().map(Path::new).chain(files.map(PathBuf::as_path));
-        input::spared("--overlay", self.overlay.as_deref().filter(|path| !path.is_dir()), read)?;
         let lines = self.json || !self.quiet;
-        let target = self.overlay.as_ref().map(|path| video::target(path, lines)).transpose()?;
+        let target = self.overlay.as_ref().map(|path| video::target(path, lines, read)).transpose()?;
         let horizon = Horizon::new(self.level)?;
         let PipelineConfig { alarm, .. } = PipelineConfig::default();
         let mut config = PipelineConfig {
@@ -153,7 +163,7 @@ impl Run {
                 heading: self.heading.into(),
                 ..Sphere::default()
             },
-            gyro: self.gyro.config()?,
+            gyro: self.gyro.config().map_err(|error| named_by_flags(error, &FLAGS))?,
             alarm: Alarm {
                 within_s: self.within_s.unwrap_or(alarm.within_s),
                 aside_s: self.aside_s.unwrap_or(alarm.aside_s),
@@ -161,7 +171,7 @@ impl Run {
             },
             ..PipelineConfig::default()
         };
-        config.validate()?;
+        config.validate().map_err(|error| named_by_flags(error, &FLAGS))?;
         let file = self.camera.as_ref().map(|path| Ok((path, io::camera::read(path)?))).transpose()?;
         let feed = self.gyro.feed()?;
         let source = Source::open(&self.inputs, self.raw)?;
@@ -184,7 +194,7 @@ impl Run {
         config.mask = self.mask.as_ref().map(|path| input::plane(path, size, &name)).transpose()?;
         // Masked pixels must not affect the flow beside the mask.
         config.certainty = config.mask.is_some();
-        let pipeline = Pipeline::new(self.backend.open_unless(self.quiet)?, &camera, &config)?;
+        let pipeline = Pipeline::new(self.backend.open(self.quiet)?, &camera, &config)?;
         // The start-up time is not part of the first frame's age.
         first.arrived = Instant::now();
         let (ideal, rate) = (*pipeline.ideal(), frames.times().rate().fraction());

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::horizon::Horizon;
 use crate::camera::Camera;
-use crate::cli::flow::targets::{Place, check_places, place};
+use crate::cli::paths;
+use crate::cli::place::{Allowed, Place};
 use crate::error::{Error, Result};
 use crate::frame::PixelFormat;
 use crate::io::{Y4mWriter, write_atomic};
@@ -13,18 +14,17 @@ use crate::live::TimedFrame;
 use crate::pipeline::Cue;
 use crate::report::Overlay;
 
-/// The destination of the video, checked before the computation starts.
-pub(super) fn target(path: &Path, lines: bool) -> Result<Place> {
-    let place = place(path, true, "y4m", &["y4m"])?;
-    match &place {
-        Place::Folder(folder, _) => {
-            return Err(Error::parameter("--overlay", folder.display(), "a .y4m file, not a folder"));
-        }
-        Place::Stdout if lines => {
-            return Err(Error::parameter("--overlay", "-", "--quiet with it, as lines go there too"));
-        }
-        Place::Stdout | Place::File(_) => check_places([&place].into_iter())?,
+/// The destination of the video, checked before the computation starts. `inputs` are the files that are read.
+pub(super) fn target<'a>(
+    path: &Path,
+    lines: bool,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<Place> {
+    let place = Allowed::file_or_stdout(&["y4m"]).place("--overlay", path)?;
+    if lines && place == Place::Stdout {
+        return Err(Error::parameter("--overlay", "-", "--quiet with it, as lines go there too"));
     }
+    paths::check(&[("--overlay", Some(&place))], inputs)?;
     Ok(place)
 }
 

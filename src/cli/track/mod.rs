@@ -7,20 +7,19 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use indicatif::ProgressBar;
 
 use self::outputs::{Places, Writers};
 use self::summary::Summary;
 use super::args::{named_by_flags, whole, whole_within};
 use super::backend::BackendArgs;
 use super::flow::source::Source;
-use super::progress::progress;
+use super::progress::Progress;
 use super::{Outcome, input};
 use crate::error::{Error, Result};
 use crate::features::{CornerParameters, CornerResponse};
 use crate::frame::{Image, Plane, Size};
-use crate::io::points;
-use crate::tracking::{MAX_POINTS, TrackParameters, Tracker, TrackerConfig, is_inside};
+use crate::io::points::{self, ListedPoint};
+use crate::tracking::{MAX_POINTS, TrackParameters, Tracker, TrackerConfig};
 
 /// Track corners over a sequence or video: Shi-Tomasi corners and pyramidal Lucas-Kanade.
 ///
@@ -48,16 +47,20 @@ pub(super) struct TrackCommand {
     /// Write the tracks to this .csv; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Write the frames with the tracks over them to this .y4m, or as .png files into this folder
+    /// Write the frames with the tracks over them to this .y4m, or as .png files into this folder; ffmpeg converts both to
+    /// other videos
     #[arg(long, value_name = "PATH")]
     overlay: Option<PathBuf>,
-    /// Track the points of this file (x,y in pixels, one per line) in place of corners; new corners are detected only with
-    /// --min-tracks
+    /// Track the points of this file in place of corners: x,y in pixels, one point per line, at most --max-corners of them. New
+    /// corners are detected only with --min-tracks
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Detect corners only where this mask is over 0: an image or a .npy plane of 0 to 1
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
+    /// Print no progress and no notes
+    #[arg(long)]
+    quiet: bool,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -79,13 +82,14 @@ struct CornerArgs {
     /// The most live tracks, 1 to 65535
     #[arg(long, value_name = "N", default_value = "500", value_parser = whole_within(1, MAX_POINTS))]
     max_corners: usize,
-    /// Detect new corners when fewer tracks than this live; 0 for never [default: half of --max-corners]
+    /// Detect new corners when fewer tracks than this live, at most --max-corners; 0 for never [default: half of
+    /// --max-corners, 0 with --points]
     #[arg(long, value_name = "N", value_parser = whole::<usize>)]
     min_tracks: Option<usize>,
     /// The least response of a corner relative to the largest one, above 0 and up to 1
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, allow_negative_numbers = true)]
     quality_level: f64,
-    /// The least distance between corners, and from live tracks
+    /// The least distance between corners, and from live tracks, 0 to 16384; below 1 it has no effect
     #[arg(long, value_name = "PX", default_value_t = 7.0, allow_negative_numbers = true)]
     min_distance: f64,
     /// Side of the block over which gradients are summed, 1 to 64
@@ -109,7 +113,8 @@ struct CornerArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Tracking")]
 struct TrackArgs {
-    /// Side of the window around a point, or its width and height, such as 31x15
+    /// Side of the window around a point, or its width and height, such as 31x15: each 3 to 1024 and at most the frame's, with
+    /// at most 4096 pixels in all
     #[arg(long, value_name = "PX", default_value = "21", value_parser = window)]
     window: [u32; 2],
     /// Levels of the pyramid beside the full image, 0 to 16; those that the window would cover are left out
@@ -121,10 +126,10 @@ struct TrackArgs {
     /// Length of a step that ends the iterations, 0 to 10
     #[arg(long, value_name = "PX", default_value_t = 0.01, allow_negative_numbers = true)]
     epsilon: f64,
-    /// The least smaller eigenvalue of a window's gradient matrix, in OpenCV's unit
+    /// The least smaller eigenvalue of a window's gradient matrix, in OpenCV's unit, 0 to 10⁹
     #[arg(long, value_name = "VALUE", default_value_t = 1e-4, allow_negative_numbers = true)]
     min_eigenvalue: f64,
-    /// Track each point back as well, and end tracks that miss their start by more than this
+    /// Track each point back as well, and end tracks that miss their start by more than this, above 0
     #[arg(long, value_name = "PX", allow_negative_numbers = true)]
     forward_backward: Option<f32>,
 }
@@ -154,13 +159,20 @@ impl TrackCommand {
     pub(super) fn run(&self) -> Result<Outcome> {
         let config = self.config();
         config.corners.validate().map_err(|error| named_by_flags(error, &FLAGS))?;
-        let points = self.points.as_ref().map(points::read).transpose()?;
-        let mut source = Source::open(&self.inputs, self.raw)?;
-        for (flag, result) in [("-o", &self.output), ("--overlay", &self.overlay)] {
-            let given = [&self.points, &self.mask].into_iter().flatten().map(PathBuf::as_path);
-            input::spared(flag, result.as_deref(), self.inputs.iter().map(Path::new).chain(given))?;
+        let limit = config.corners.max_corners;
+        if config.min_tracks > limit {
+            let expected = format_args!("at most --max-corners, {limit}");
+            return Err(Error::parameter("--min-tracks", config.min_tracks, expected));
         }
-        let places = Places::new(self.output.as_deref(), self.overlay.as_deref(), self.json)?;
+        let points = self.points.as_ref().map(points::read).transpose()?;
+        if let (Some(path), Some(points)) = (&self.points, points.as_ref().filter(|all| all.len() > limit)) {
+            let expected = format_args!("at most --max-corners, {limit}");
+            return Err(Error::format(path, "number of points", points.len(), expected));
+        }
+        let mut source = Source::open(&self.inputs, self.raw)?;
+        let given = [&self.points, &self.mask].into_iter().flatten().map(PathBuf::as_path);
+        let read = self.inputs.iter().map(Path::new).chain(given);
+        let places = Places::new(self.output.as_deref(), self.overlay.as_deref(), self.json, read)?;
         let images = source.first_two()?;
         let (size, first) = (images[0].size, &self.inputs[0]);
         config.track.validate(size).map_err(|error| named_by_flags(error, &FLAGS))?;
@@ -168,19 +180,19 @@ impl TrackCommand {
         if let (Some(path), Some(points)) = (&self.points, &points) {
             inside(path, points, size, first)?;
         }
-        let backend = self.backend.open()?;
+        let backend = self.backend.open(self.quiet)?;
         let mut tracker = Tracker::new(&backend, size, images[0].format, &config)
             .map_err(|error| named_by_flags(error, &[("forward_backward_px", "--forward-backward")]))?;
         if let Some(points) = points {
-            tracker.set_points(points)?;
+            tracker.set_points(points.iter().map(|point| point.place).collect())?;
         }
-        let bar = progress(source.len(), "frames", 2);
+        let progress = Progress::of_sequence(source.len(), "frames", 2, self.quiet);
         let mut summary = Summary::new(backend.name(), size);
         let rate = source.rate().unwrap_or((30, 1));
         let done = places.with_writers(size, rate, |writers| {
-            follow(&mut tracker, &mut source, images, mask.as_ref(), writers, &mut summary, &bar)
+            follow(&mut tracker, &mut source, images, mask.as_ref(), writers, &mut summary, &progress)
         });
-        bar.finish_and_clear();
+        progress.finish();
         done?;
         if !places.writes_to_stdout() {
             summary.print(self.json)?;
@@ -203,12 +215,12 @@ impl TrackCommand {
 }
 
 /// Checks that given points lie inside the frames.
-fn inside(path: &Path, points: &[[f32; 2]], size: Size, first: &str) -> Result<()> {
-    match points.iter().find(|point| !is_inside(**point, size)) {
+fn inside(path: &Path, points: &[ListedPoint], size: Size, first: &str) -> Result<()> {
+    match points.iter().find(|point| !size.contains(point.place)) {
         None => Ok(()),
-        Some([x, y]) => {
+        Some(ListedPoint { place: [x, y], line }) => {
             let expected = format_args!("a place inside the {size} of {first}");
-            Err(Error::format(path, "a point", format_args!("{x},{y}"), expected))
+            Err(Error::format(path, "a point", format_args!("{x},{y} in line {line}"), expected))
         }
     }
 }
@@ -220,7 +232,7 @@ fn follow(
     mask: Option<&Plane>,
     writers: &mut Writers<'_, '_>,
     summary: &mut Summary,
-    bar: &ProgressBar,
+    progress: &Progress,
 ) -> Result<()> {
     let (mut image, mut next) = (first, Some(second));
     for number in 0.. {
@@ -231,7 +243,7 @@ fn follow(
         if !writers.write(number, &frame, tracks)? {
             break;
         }
-        bar.inc(1);
+        progress.inc();
         match next.take() {
             Some(second) => image = second,
             None if source.next(&mut image)? => {}

@@ -3,8 +3,8 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::cli::flow::targets::{Place, check_places, place};
-use crate::cli::input;
+use crate::cli::place::{Allowed, Folder, Place};
+use crate::cli::{input, paths};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, PixelFormat, Size};
 use crate::io::{Y4mWriter, picture, write_atomic};
@@ -33,29 +33,21 @@ enum Pictures<'a> {
 }
 
 impl Places {
-    /// Checks the arguments, and creates nothing.
-    pub(super) fn new(output: Option<&Path>, overlay: Option<&Path>, json: bool) -> Result<Self> {
-        let csv = output.map(|path| place(path, true, "csv", &["csv"])).transpose()?;
-        if let Some(Place::Folder(folder, _)) = &csv {
-            return Err(Error::parameter("-o", folder.display(), "a .csv file, not a folder"));
-        }
-        let overlay = match overlay {
-            Some(path) if path == Path::new("-") => {
-                return Err(Error::parameter("--overlay", "-", "a .y4m file or a folder"));
-            }
-            Some(path) => {
-                Some(match path.extension().is_some_and(|extension| extension == "y4m") && !path.is_dir() {
-                    true => place(path, true, "png", &["y4m"])?,
-                    false => Place::Folder(path.to_owned(), "png"),
-                })
-            }
-            None => None,
-        };
+    /// Checks the arguments, of which `inputs` are those that are read, and creates nothing.
+    pub(super) fn new<'a>(
+        output: Option<&Path>,
+        overlay: Option<&Path>,
+        json: bool,
+        inputs: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<Self> {
+        let csv = output.map(|path| Allowed::file_or_stdout(&["csv"]).place("-o", path)).transpose()?;
+        let pictures = Allowed { files: &["y4m"], folder: Folder::Any("png"), stdout: false };
+        let overlay = overlay.map(|path| pictures.place("--overlay", path)).transpose()?;
         let places = Self { csv, overlay };
         if json && places.writes_to_stdout() {
             return Err(Error::parameter("--json", "given", "none where results go to standard output"));
         }
-        check_places([&places.csv, &places.overlay].into_iter().flatten())?;
+        paths::check(&[("-o", places.csv.as_ref()), ("--overlay", places.overlay.as_ref())], inputs)?;
         Ok(places)
     }
 

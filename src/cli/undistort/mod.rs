@@ -5,14 +5,13 @@ mod resample;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use indicatif::ProgressBar;
 
 use self::resample::Resample;
 use super::backend::BackendArgs;
 use super::flow::source::Source;
-use super::flow::targets::{Place, check_places, place};
-use super::progress::progress;
-use super::{Outcome, input, print};
+use super::place::{Allowed, Folder, Place};
+use super::progress::Progress;
+use super::{Outcome, input, paths, print};
 use crate::camera::{Camera, Framing, Lens};
 use crate::error::{Error, Result};
 use crate::frame::{FlowField, Image, Size, UNKNOWN_FLOW};
@@ -68,6 +67,9 @@ pub(super) struct Undistort {
     /// Size of raw gray frames, one byte per pixel, on standard input
     #[arg(long, value_name = "WxH")]
     raw: Option<Size>,
+    /// Print no progress and no notes
+    #[arg(long)]
+    quiet: bool,
     #[command(flatten)]
     backend: BackendArgs,
 }
@@ -95,12 +97,6 @@ impl Undistort {
         let raw = io::camera::read(&self.camera)?;
         let out = self.ideal(&raw)?;
         let mut source = Source::open(&self.inputs, self.raw)?;
-        for (flag, result) in
-            [("-o", &self.output), ("--field", &self.field), ("--write-camera", &self.write_camera)]
-        {
-            let read = self.inputs.iter().map(Path::new).chain([self.camera.as_path()]);
-            input::spared(flag, result.as_deref(), read)?;
-        }
         let places = self.places(source.len() == Some(1))?;
         let mut image = Image::default();
         if !source.next(&mut image)? {
@@ -119,10 +115,10 @@ impl Undistort {
             io::camera::write(path, &out, format)?;
         }
         let Some(place) = &places.output else { return Ok(Outcome::Done) };
-        let mut resample = Resample::new(&self.backend.open()?, &raw, &out)?;
-        let bar = progress(source.len(), "frames", 1);
-        let done = frames(&mut resample, &mut source, &mut image, place, &bar);
-        bar.finish_and_clear();
+        let mut resample = Resample::new(&self.backend.open(self.quiet)?, &raw, &out)?;
+        let progress = Progress::of_sequence(source.len(), "frames", 1, self.quiet);
+        let done = frames(&mut resample, &mut source, &mut image, place, &progress);
+        progress.finish();
         done?;
         if !matches!(place, Place::Stdout) {
             let Camera { size, f_u, f_v, u_0, v_0, .. } = out;
@@ -150,24 +146,22 @@ impl Undistort {
         if self.output.is_none() && self.field.is_none() && self.write_camera.is_none() {
             return Err(Error::parameter("-o", "missing", "-o, --field or --write-camera"));
         }
-        let one = |path: &Option<PathBuf>, kinds: &[&str]| {
-            path.as_ref().map(|path| place(path, true, "png", kinds)).transpose()
+        let place = |flag: &'static str, path: &Option<PathBuf>, allowed: Allowed| {
+            path.as_ref().map(|path| allowed.place(flag, path)).transpose()
+        };
+        let result = match single {
+            true => Allowed { files: &["png"], folder: Folder::Marked("png"), stdout: true },
+            false => Allowed::of_sequence("png"),
         };
         let places = Places {
-            output: self.output.as_ref().map(|path| place(path, single, "png", &["png"])).transpose()?,
-            field: one(&self.field, &["png"])?,
-            camera: one(&self.write_camera, &["yaml", "yml"])?,
+            output: place("-o", &self.output, result)?,
+            field: place("--field", &self.field, Allowed::file(&["png"]))?,
+            camera: place("--write-camera", &self.write_camera, Allowed::file(&["yaml", "yml"]))?,
         };
-        for (name, place) in [("--field", &places.field), ("--write-camera", &places.camera)] {
-            match place {
-                Some(Place::Folder(folder, _)) => {
-                    return Err(Error::parameter(name, folder.display(), "a file, not a folder"));
-                }
-                Some(Place::Stdout) => return Err(Error::parameter(name, "-", "a file")),
-                Some(Place::File(_)) | None => {}
-            }
-        }
-        check_places([&places.output, &places.field, &places.camera].into_iter().flatten())?;
+        let Places { output, field, camera } = &places;
+        let results =
+            [("-o", output.as_ref()), ("--field", field.as_ref()), ("--write-camera", camera.as_ref())];
+        paths::check(&results, self.inputs.iter().map(Path::new).chain([self.camera.as_path()]))?;
         Ok(places)
     }
 }
@@ -177,12 +171,12 @@ fn frames(
     source: &mut Source,
     image: &mut Image,
     place: &Place,
-    bar: &ProgressBar,
+    progress: &Progress,
 ) -> Result<()> {
     place.make_folder()?;
     for number in 0.. {
         place.write(number, &picture::encode_png(&resample.apply(image)?)?)?;
-        bar.inc(1);
+        progress.inc();
         if !source.next(image)? {
             break;
         }
