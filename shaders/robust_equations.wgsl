@@ -31,5 +31,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
     let second = continued_second_at(vec2f(f32(x), f32(y)) + d, params.kappa);
     let m = model(Expansion(quad_0[i], cross_term_0[i]), second, vec2f());
-    store_equations(id.xy, slope_residual(m), select(params.outside, 1.0, second.inside), true);
+    let weight = select(params.outside, 1.0, second.inside);
+    store_equations(id.xy, robust_equations(id.xy, slope_residual(m), weight, true));
 }

@@ -30,46 +30,21 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let y = min(id.y, params.height - 1u);
     let i = y * stride + x;
     let d = vec2f(flow[2u * y * stride + x], flow[(2u * y + 1u) * stride + x]);
-    let place = vec2f(f32(x), f32(y)) + d;
-    let whole = floor(place);
-    // NaN is not inside either.
-    let inside = all(whole >= vec2f()) && all(whole < vec2f(f32(params.width), f32(params.height)) - 1.0);
-    let at = vec2u(select(vec2f(), whole, inside));
-    let j = at.y * stride + at.x;
-    // One past the end only where an image is one pixel wide or high, and then no place is inside.
-    let right = select(0u, 1u, inside);
-    let below = select(0u, stride, inside);
-    let f = place - whole;
-    let a = weighted(j, (1.0 - f.x) * (1.0 - f.y), f);
-    let b = weighted(j + right, f.x * (1.0 - f.y), f - vec2f(1.0, 0.0));
-    let c = weighted(j + below, (1.0 - f.x) * f.y, f - vec2f(0.0, 1.0));
-    let e = weighted(j + below + right, f.x * f.y, f - 1.0);
-    let sum = a.certainty + b.certainty + c.certainty + e.certainty;
-    let second = Expansion(
-        (a.quad + b.quad + c.quad + e.quad) / sum,
-        (a.cross_term + b.cross_term + c.cross_term + e.cross_term) / sum,
-    );
-    let m = model(Expansion(quad_0[i], cross_term_0[i]), Second(second, inside), vec2f());
+    let there = weighted_second_at(vec2f(f32(x), f32(y)) + d, params.kappa);
+    let inside = there.second.inside;
+    let m = model(Expansion(quad_0[i], cross_term_0[i]), there.second, vec2f());
     // A place outside counts with the pixel's certainty; otherwise halving all certainty would double its weight.
     let own = certainty_0[i];
-    let certainty = own * select(own, sum, inside);
+    let certainty = own * select(own, there.certainty, inside);
     let outside = select(params.outside, 1.0, inside);
     // Equations without certainty are left out.
-    store_equations(id.xy, slope_residual(m), certainty * outside, certainty > 1e-6);
+    store_equations(id.xy, robust_equations(id.xy, slope_residual(m), certainty * outside, certainty > 1e-6));
 }
 
-// One of the four pixels around a place, continued to the place and times its weight and its certainty, so that pixels
-// without an expansion do not draw the mean towards zero.
-struct Weighted {
-    quad: vec4f,
-    cross_term: f32,
-    certainty: f32,
+fn cross_term_of(i: u32) -> f32 {
+    return cross_term_1[i];
 }
 
-fn weighted(i: u32, weight: f32, away: vec2f) -> Weighted {
-    let w = weight * certainty_1[i];
-    let quad = quad_1[i];
-    let cross_term = cross_term_1[i];
-    let slope = vec2f(2.0 * quad.z * away.x + cross_term * away.y, cross_term * away.x + 2.0 * quad.w * away.y);
-    return Weighted(w * (quad + vec4f(params.kappa * slope, 0.0, 0.0)), w * cross_term, w);
+fn certainty_of(i: u32) -> f32 {
+    return certainty_1[i];
 }

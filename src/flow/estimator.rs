@@ -12,7 +12,15 @@ use super::parameter::Parameters;
 pub trait Estimator: Parameters {
     /// Whether the flow of a pair depends on the earlier pairs of its stream, by buffers that are
     /// [carried](Stages::carried).
-    const HAS_MEMORY: bool = false;
+    fn has_memory(&self) -> bool {
+        false
+    }
+
+    /// The number of frames from which a pair's flow is computed: 2, or more where images of earlier frames are carried. The
+    /// first pairs of a stream have fewer.
+    fn frames(&self) -> u32 {
+        2
+    }
 
     /// Checks every parameter's range.
     ///

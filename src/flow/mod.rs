@@ -88,7 +88,13 @@ macro_rules! estimators {
             /// Whether the flow of a pair depends on the earlier pairs of its stream. A first pair, and one after a reset,
             /// has none.
             pub fn has_memory(&self) -> bool {
-                match self { $(Self::$Type(_) => <$Type as Estimator>::HAS_MEMORY),* }
+                match self { $(Self::$Type(parameters) => Estimator::has_memory(parameters)),* }
+            }
+
+            /// The number of frames from which the flow of a pair is computed: 2, or 3 where the frame before the pair counts
+            /// too. The first pair of a stream, and one after a reset, has only its own two.
+            pub fn frames(&self) -> u32 {
+                match self { $(Self::$Type(parameters) => Estimator::frames(parameters)),* }
             }
 
             /// The method's presets.

@@ -29,7 +29,7 @@ params! {
 }
 
 kernel!(
-    "cell_evidence" + ["equations", "second"],
+    "cell_evidence" + ["equations", "model", "second"],
     reference(
         Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty_0, certainty_1, flow
     ) -> (evidence),

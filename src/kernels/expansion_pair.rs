@@ -28,6 +28,8 @@ pub(super) struct ExpansionPair<'a> {
     /// The share of its Hessian by which each of the four expansions around a place is continued to the place, before the
     /// slopes are averaged; 0 averages the slopes as they are.
     pub(super) kappa: f32,
+    /// The time of the second expansion, in displacements from the first one: 1 for the second frame of a pair.
+    pub(super) time: f32,
 }
 
 /// The common model of the two frames at a block of pixels: A the mean of both, and b = −½ (b2 − b1).
@@ -108,8 +110,8 @@ impl ExpansionPair<'_> {
         let (right, bottom) = ((self.width - 1) as f32, (self.height - 1) as f32);
         let (stride, x0, y) = (self.stride as u32, x0 as u32, y as f32);
         for i in 0..BLOCK {
-            let x = ((x0 + i as u32) as f32).min(right) + u[i];
-            let y = y + v[i];
+            let x = ((x0 + i as u32) as f32).min(right) + self.time * u[i];
+            let y = y + self.time * v[i];
             // NaN is not inside either.
             let inside = (x >= 0.0) & (y >= 0.0) & (x < right) & (y < bottom);
             let (x, y) = if inside { (x, y) } else { (0.0, 0.0) };
@@ -362,8 +364,9 @@ impl ExpansionPair<'_> {
     }
 }
 
+/// Overflow and NaN become zeros.
 #[inline(always)]
-fn zero_unknown(channels: &mut [Block; 5]) {
+pub(super) fn zero_unknown(channels: &mut [Block; 5]) {
     for i in 0..BLOCK {
         let size = channels[0][i].abs()
             + channels[1][i].abs()

@@ -27,7 +27,7 @@ params! {
 }
 
 kernel!(
-    "misfit" + ["equations", "second", "continued", "slope_residual"],
+    "misfit" + ["equations", "model", "second", "continued", "slope_residual"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty, flow) -> (squared_misfit, agreement),
     cases: cases,
     tolerance: Tolerance {
@@ -67,6 +67,7 @@ fn reference(
         height,
         stride,
         kappa: p.kappa,
+        time: 1.0,
     };
     pair.each_block_of_two(squared_misfit, agreement, flow, #[inline(always)] |model, stretch| {
         let mut channels = [[0.0; BLOCK]; 2];

@@ -24,7 +24,7 @@ params! {
 }
 
 kernel!(
-    "normal_equations" + ["image", "equations", "second"],
+    "normal_equations" + ["image", "equations", "model", "second"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, flow) -> (equations),
     cases: cases,
     tolerance: Tolerance {
@@ -49,7 +49,7 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair =
-        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride, kappa: 0.0 };
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride, kappa: 0.0, time: 1.0 };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p));
 }
 

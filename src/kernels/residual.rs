@@ -20,7 +20,7 @@ params! {
 }
 
 kernel!(
-    "residual" + ["equations", "second"],
+    "residual" + ["equations", "model", "second"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, certainty, flow) -> (evidence),
     cases: cases,
     tolerance: Tolerance {
@@ -46,7 +46,7 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let pair =
-        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride, kappa: 0.0 };
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1: None, width, height, stride, kappa: 0.0, time: 1.0 };
     pair.each_block(evidence, flow, #[inline(always)] |model, stretch| {
         let mut channels = [[0.0; BLOCK]; 5];
         let certainties = &certainty[stretch.at..][..stretch.count];

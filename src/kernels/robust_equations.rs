@@ -38,7 +38,7 @@ params! {
 }
 
 kernel!(
-    "robust_equations" + ["equations", "second", "continued", "slope_residual", "robust"],
+    "robust_equations" + ["equations", "model", "second", "continued", "slope_residual", "robust"],
     reference(Params; quad_0, cross_term_0, quad_1, cross_term_1, flow) -> (equations),
     cases: cases,
     tolerance: Tolerance {
@@ -72,18 +72,19 @@ fn reference(
         height,
         stride,
         kappa: p.kappa,
+        time: 1.0,
     };
-    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p));
+    pair.each_block(equations, flow, #[inline(always)] |model, stretch| equations_of(model, stretch, p, 1.0));
 }
 
 /// G = ψ Σ n h hᵀ and q = ψ Σ n r h over the two equations: channels xx, xy, yy, x, y; outside the second frame the first expansion's own, times
-/// `outside`.
+/// `outside`. `time` is that of the second expansion, which multiplies the Hessian.
 #[inline(always)]
-pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params) -> [Block; 5] {
+pub(super) fn equations_of(model: &Model, stretch: &Stretch<'_>, p: &Params, time: f32) -> [Block; 5] {
     let mut channels = [[0.0; BLOCK]; 5];
     for (i, inside) in model.inside.iter().enumerate() {
         // The model has half of the Hessians and of the slopes' difference.
-        let (xx, xy, yy) = (2.0 * model.a_xx[i], 2.0 * model.a_xy[i], 2.0 * model.a_yy[i]);
+        let [xx, xy, yy] = [&model.a_xx, &model.a_xy, &model.a_yy].map(|a| 2.0 * time * a[i]);
         let (r_x, r_y) = (2.0 * model.b_x[i], 2.0 * model.b_y[i]);
         let [n_x, n_y, s] = residual(xx, xy, yy, r_x, r_y, p.floor);
         let psi = if p.robust > 0.0 { 1.0 / (s + p.robust).sqrt() } else { 1.0 };

@@ -19,7 +19,7 @@ use crate::kernel::{Case, Tolerance, kernel};
 pub use super::normal_equations::Params;
 
 kernel!(
-    "weighted_normal_equations" + ["image", "equations", "second"],
+    "weighted_normal_equations" + ["image", "equations", "model", "second"],
     reference(
         Params; quad_0, cross_term_0, certainty_0, quad_1, cross_term_1, certainty_1, flow
     ) -> (equations),
@@ -51,7 +51,7 @@ fn reference(
     let (quad_0, quad_1) = (fours(quad_0), fours(quad_1));
     let certainty_1 = Some(certainty_1);
     let pair =
-        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa: 0.0 };
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa: 0.0, time: 1.0 };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
         let mut channels = equations_of(model, stretch, p);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {

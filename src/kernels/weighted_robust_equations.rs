@@ -13,7 +13,7 @@ use crate::kernel::{Case, Tolerance, kernel};
 pub use super::robust_equations::Params;
 
 kernel!(
-    "weighted_robust_equations" + ["equations", "second", "slope_residual", "robust"],
+    "weighted_robust_equations" + ["equations", "model", "weighted_second", "slope_residual", "robust"],
     reference(
         Params; quad_0, cross_term_0, certainty_0, quad_1, cross_term_1, certainty_1, flow
     ) -> (equations),
@@ -27,7 +27,7 @@ kernel!(
 );
 
 /// Equations of less certainty are left out, because their expansion is a quotient of two numbers near zero.
-const LEAST_CERTAINTY: f32 = 1e-6;
+pub(super) const LEAST_CERTAINTY: f32 = 1e-6;
 
 #[allow(clippy::too_many_arguments, reason = "one for each buffer, as in the shader")]
 fn reference(
@@ -46,9 +46,9 @@ fn reference(
     let certainty_1 = Some(certainty_1);
     let kappa = p.kappa;
     let pair =
-        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa };
+        ExpansionPair { quad_0, cross_term_0, quad_1, cross_term_1, certainty_1, width, height, stride, kappa, time: 1.0 };
     pair.each_block(equations, flow, #[inline(always)] |model, stretch| {
-        let mut channels = equations_of(model, stretch, p);
+        let mut channels = equations_of(model, stretch, p, 1.0);
         for (i, &own) in certainty_0[stretch.at..][..stretch.count].iter().enumerate() {
             let certainty = own * if model.inside[i] > 0.0 { model.certainty_1[i] } else { own };
             let weight = if certainty > LEAST_CERTAINTY { certainty } else { 0.0 };

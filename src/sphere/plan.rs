@@ -75,6 +75,14 @@ pub(crate) fn plan(
 
     let mut bufs = Bufs::default();
     let rectify = Rectification::new(&mut bufs, cameras, view, format);
+    if rectify.turned.is_some() && algorithm.frames() > 2 {
+        let found = format_args!("{} of {} frames", algorithm.name(), algorithm.frames());
+        return Err(Error::parameter(
+            "algorithm",
+            found,
+            "one of 2 frames where they are derotated before the flow",
+        ));
+    }
     let motion = bufs.input("motion", MOTION_LEN);
     let found = bufs.computed("flow", Shape::planar(size, 2));
     let rotational = primed.then(|| bufs.computed("rotational flow", Shape::planar(size, 2)));

@@ -70,6 +70,14 @@ fn inputs() {
         (&["flow", "a.png", "-o", "o"], &["a.png", "number of frames is 1, expected at least 2"]),
         (&["flow", "."], &["input is a folder, expected files, such as './*.png' or './%04d.png'"]),
         (&["flow", "a.png", "text.png", "-o", "o.flo"], &["text.png", "expected a PNG"]),
+        (
+            &["flow", "a.png", "b.png", "-o", "o.flo", "--algorithm", "farneback-tv", "--third-frame", "0.5"],
+            &["a.png b.png", "number of frames is 2, expected at least 3 for a third frame"],
+        ),
+        (
+            &["flow", "a.png", "b.png", "-o", "o.flo", "--algorithm", "farneback-tv", "--third-frame", "NaN"],
+            &["third_frame is NaN, expected 0 to 1"],
+        ),
         (&["flow", "a.png", "wide.png", "-o", "o.flo"], &["wide.png", "41×33", "40×33 as in a.png"]),
         (&["flow", "a.png", "rgb.png", "-o", "o.flo"], &["rgb.png", "rgb8", "gray8 as in a.png"]),
         (&["flow", "frames/%04d.png", "-o", "o"], &["frames"]),

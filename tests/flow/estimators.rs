@@ -214,6 +214,16 @@ macro_rules! tests {
 }
 viewsphere::for_each_estimator!(tests);
 
+mod farneback_tv_with_memory {
+    fn algorithm() -> viewsphere::flow::Algorithm {
+        viewsphere::flow::FarnebackTv { third_frame: 0.5, carry: 0.5, ..Default::default() }.into()
+    }
+    tests!(@each
+        finds_a_motion_and_gives_the_same_bytes_twice gives_numbers_at_every_size a_stream_gives_the_bits_of_pairs
+        a_certainty_masks the_confidence_tells_texture_from_none both_executors_agree
+    );
+}
+
 #[test]
 fn every_estimator_is_found_by_its_name() {
     for (name, _) in Algorithm::ALL {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod atomic;
+mod backward;
 mod camera;
 mod certainty;
 mod confidence;

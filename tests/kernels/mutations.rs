@@ -6,14 +6,15 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, affine_columns, binomial, block_sum, brightness_equations, cast, cell_confidence, cell_evidence,
-    cell_mean, cells, compare, confidence, corner_response, correct, cubic_warp, downsample_flow,
-    expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations, links, local_maxima, looming,
-    luma, misfit, nonlocal, normal_equations, normalized_expansion_x, normalized_expansion_y, patches,
-    premultiply, pyr_down, remap, resample_x, resample_y, residual, robust_equations, rotational_flow,
-    row_maximum, sectors, sensor, shade, slope_weights, smoothness, solve, solve_affine, solve_increment,
-    spherical_flow, structure_tensor, sweep, track_points, transport, undistort_map, unweight, upsample,
-    warp, weighted_normal_equations, weighted_robust_equations, window_y,
+    ALL, affine_columns, binomial, block_sum, brightness_equations, carry, cast, cell_confidence,
+    cell_evidence, cell_mean, cells, compare, confidence, corner_response, correct, cubic_warp,
+    downsample_flow, expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations,
+    keep_expansion, links, local_maxima, looming, luma, misfit, nonlocal, normal_equations,
+    normalized_expansion_x, normalized_expansion_y, older_equations, patches, premultiply, pyr_down, remap,
+    resample_x, resample_y, residual, robust_equations, rotational_flow, row_maximum, sectors, sensor, shade,
+    slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, structure_tensor, sweep,
+    track_points, transport, undistort_map, unweight, upsample, warp, weighted_normal_equations,
+    weighted_robust_equations, window_y,
 };
 
 use crate::need;
@@ -98,6 +99,16 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&weighted_robust_equations::KERNEL, "f - vec2f(0.0, 1.0)", "f"),
     (&weighted_robust_equations::KERNEL, "certainty * outside", "outside"),
     (&weighted_robust_equations::KERNEL, "certainty > 1e-6", "certainty > 1e-2"),
+    (&older_equations::KERNEL, "m.a = params.time * m.a", "m.a = abs(params.time) * m.a"),
+    (&older_equations::KERNEL, "params.weight * certainty", "params.weight"),
+    (&older_equations::KERNEL, "there.second.inside && certainty", "certainty"),
+    (&older_equations::KERNEL, "+ params.time * d", "- d"),
+    (&older_equations::KERNEL, "q + own.q", "own.q"),
+    (&keep_expansion::KERNEL, "i + stride * params.height]", "i + stride * (params.height - 1u)]"),
+    (&carry::KERNEL, "params.sense * d", "d"),
+    (&carry::KERNEL, "previous[(3u * y + 2u) * stride + x] > 0.0 && ", ""),
+    (&carry::KERNEL, "1.0 + far * params.inverse", "1.0 + 1.1 * far * params.inverse"),
+    (&carry::KERNEL, "min(first + 1u, last)", "first"),
     (&slope_weights::KERNEL, "g - expected(x, y)", "g + expected(x, y)"),
     (&slope_weights::KERNEL, "right - left == 2u", "right - left >= 1u"),
     (&expected_slope::KERNEL, "vec4f(-0.5)", "vec4f(-0.49)"),

@@ -33,6 +33,7 @@ Examples:
   viewsphere flow a.png b.png -o flow.flo --color flow.png
   viewsphere flow a.png b.png -o - > flow.flo
   viewsphere flow 'frames/%04d.png' -o flows/ --color colours/ --warm-start
+  viewsphere flow a.png b.png c.png -o flows/ --algorithm farneback-tv --preset accurate --third-frame 0.5
   viewsphere flow video.y4m -o flows/ --format kitti --backend gpu
   ffmpeg -i in.mp4 -pix_fmt yuv420p -f yuv4mpegpipe - | viewsphere flow - -o flows/
   ffmpeg -i in.mp4 -f rawvideo -pix_fmt gray - | viewsphere flow - --raw 640x480 -o flows/")]
@@ -92,6 +93,13 @@ pub(super) struct Flow {
     backend: BackendArgs,
 }
 
+/// The frames that are read before the first pair is computed.
+struct Begin {
+    images: [Image; 2],
+    /// The third one, where the algorithm needs three.
+    third: Option<Image>,
+}
+
 /// The inputs beside the frames.
 struct Given {
     mask: Option<Plane>,
@@ -109,6 +117,8 @@ impl Flow {
         }
         let targets = Targets::new(self, single)?;
         let images = source.first_two()?;
+        let (frames, has_memory) = (algorithm.frames(), algorithm.has_memory());
+        let third = if frames > 2 { Some(source.third()?) } else { None };
         let (size, first) = (images[0].size, &self.inputs[0]);
         let given = Given {
             mask: self.mask.as_ref().map(|path| input::plane(path, size, first.as_ref())).transpose()?,
@@ -126,9 +136,14 @@ impl Flow {
         let mut engine = Engine::new(self.backend.open(self.quiet)?, size, &config)?;
         let pairs = source.len().map(|frames| frames.saturating_sub(1));
         let progress = Progress::of_sequence(pairs, "pairs", 1, self.quiet);
-        let done = compute(&mut engine, source, images, given, targets, &progress);
+        let done = compute(&mut engine, source, Begin { images, third }, given, targets, &progress);
         progress.finish();
         let report = done?;
+        if single && has_memory {
+            print::note("earlier pairs of a stream count too, and two images alone have none");
+        } else if frames > 2 {
+            print::note("the first pair has no older frame: its flow is that of two frames");
+        }
         if !self.writes_to_stdout() {
             report.print(self.json, self.outputs().iter().all(|path| path.is_none()))?;
         }
@@ -168,11 +183,12 @@ impl Flow {
 fn compute(
     engine: &mut Engine,
     mut source: Source,
-    [mut first, mut second]: [Image; 2],
+    begin: Begin,
     given: Given,
     mut targets: Targets,
     progress: &Progress,
 ) -> Result<Report> {
+    let Begin { images: [mut first, mut second], mut third } = begin;
     let mut report = Report::new(engine.adapter(), first.size);
     let certainty = given.mask.as_ref();
     let mut initial_flow = given.init.as_ref();
@@ -187,8 +203,10 @@ fn compute(
         progress.inc();
         initial_flow = None;
         std::mem::swap(&mut first, &mut second);
-        if !source.next(&mut second)? {
-            break;
+        match third.take() {
+            Some(image) => second = image,
+            None if source.next(&mut second)? => {}
+            None => break,
         }
     }
     report.finish(engine.latency(), targets.scale());

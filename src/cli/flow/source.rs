@@ -71,6 +71,15 @@ impl Source {
         }
         Ok(images)
     }
+
+    /// Reads the third frame, the minimum for a flow that counts an older one.
+    pub(in crate::cli) fn third(&mut self) -> Result<Image> {
+        let mut image = Image::default();
+        match self.next(&mut image)? {
+            true => Ok(image),
+            false => Err(Error::format(&self.stream, "number of frames", 2, "at least 3 for a third frame")),
+        }
+    }
 }
 
 impl FrameSource for Source {

@@ -2,8 +2,8 @@
 
 use crate::flow::Level;
 use crate::frame::Size;
-use crate::kernels::tables;
-use crate::plan::{BufId, Bufs, Shape};
+use crate::kernels::{resample_x, resample_y, tables, upsample};
+use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Radius and standard deviation in pixels of the window over which expected slopes are averaged.
 const SLOPE_WINDOW: (usize, f64) = (18, 6.0);
@@ -66,18 +66,15 @@ pub(super) struct Fit {
     pub(super) agreement: BufId,
     /// What the non-local step makes of the misfit, if there is one.
     pub(super) weight: Option<BufId>,
-    /// The certainty of frames that have none.
-    pub(super) certainty: Option<BufId>,
 }
 
 impl Fit {
-    pub(super) fn new(bufs: &mut Bufs, size: Size, certainty: bool, nonlocal: bool) -> Self {
+    pub(super) fn new(bufs: &mut Bufs, size: Size, nonlocal: bool) -> Self {
         let plane = Shape::planar(size, 1);
         Self {
             squared_misfit: bufs.computed("squared misfit", plane),
             agreement: bufs.computed("agreement", plane),
             weight: nonlocal.then(|| bufs.computed("weight of the fit", plane)),
-            certainty: (!certainty).then(|| bufs.constant("full certainty", vec![1.0; plane.len()])),
         }
     }
 }
@@ -86,20 +83,20 @@ impl Fit {
 pub(super) struct Confidence {
     /// The result, at the size of the images.
     pub(super) plane: BufId,
-    pub(super) columns: BufId,
+    columns: BufId,
     /// If the finest computed level is not the images' own.
-    pub(super) enlarged: Option<Enlarged>,
-    pub(super) gauss: BufId,
-    pub(super) taps: u32,
+    enlarged: Option<Enlarged>,
+    gauss: BufId,
+    taps: u32,
     /// The tables that keep columns and rows where they are.
-    pub(super) place: [BufId; 2],
+    place: [BufId; 2],
 }
 
 /// The confidence of a level that is enlarged to the images' size.
 #[derive(Clone, Copy)]
-pub(super) struct Enlarged {
-    pub(super) from: BufId,
-    pub(super) place: [BufId; 2],
+struct Enlarged {
+    from: BufId,
+    place: [BufId; 2],
 }
 
 impl Confidence {
@@ -124,6 +121,43 @@ impl Confidence {
                 bufs.constant("own columns", tables::place(own.width, own.width)),
                 bufs.constant("own rows", tables::place(own.height, own.height)),
             ],
+        }
+    }
+
+    /// The label of its steps.
+    pub(super) const LABEL: &str = "confidence";
+
+    /// The steps that average `agreement`, a plane of the finest computed level of size `own`, and enlarge it to `full`.
+    pub(super) fn average(&self, steps: &mut Vec<Step>, agreement: BufId, own: Size, full: Size) {
+        let (Size { width, height }, taps) = (own, self.taps);
+        let plane = Shape::planar(own, 1);
+        let [place_x, place_y] = self.place;
+        steps.push(Step::new(
+            &resample_y::KERNEL,
+            Self::LABEL,
+            resample_y::Params { width, height, in_height: height, taps },
+            &[agreement, self.gauss, place_y],
+            &[(self.columns, plane)],
+        ));
+        let whole = self.enlarged.map_or(self.plane, |enlarged| enlarged.from);
+        steps.push(Step::new(
+            &resample_x::KERNEL,
+            Self::LABEL,
+            resample_x::Params { width, height, in_width: width, taps },
+            &[self.columns, self.gauss, place_x],
+            &[(whole, plane)],
+        ));
+        if let Some(Enlarged { place: [place_x, place_y], .. }) = self.enlarged {
+            let params = upsample::Params {
+                width: full.width,
+                height: full.height,
+                in_width: width,
+                in_height: height,
+                scale: 1.0,
+                channels: 1,
+            };
+            let output = [(self.plane, Shape::planar(full, 1))];
+            steps.push(Step::new(&upsample::KERNEL, Self::LABEL, params, &[whole, place_x, place_y], &output));
         }
     }
 }

@@ -6,6 +6,8 @@
 //! ends the finest levels.
 
 mod buffers;
+mod iterations;
+mod memory;
 mod parameters;
 mod stages;
 
@@ -23,6 +25,10 @@ use crate::plan::Bufs;
 /// N. Papenberg, J. Weickert, High accuracy optical flow estimation based on a theory for warping, ECCV 2004, for warps and
 /// robust functions; D. Sun, S. Roth, M. Black, Secrets of optical flow estimation and their principles, CVPR 2010, for the
 /// non-local step.
+///
+/// [`third_frame`](Self::third_frame) and [`carry`](Self::carry) need a stream, in which the image of a point moves nearly as far
+/// in one pair as in the next: the first pair, and one after a reset, has neither an older frame nor an earlier flow. If frames
+/// are derotated before the flow, a third frame is refused, because the older image would have to be turned too.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FarnebackTv {
@@ -44,6 +50,11 @@ pub struct FarnebackTv {
     pub spacing: u32,
     /// The smallest scale of the levels that end with a non-local step, 0 to 1.
     pub nonlocal_scale: f64,
+    /// The weight, beside the pair's equations, of those of the frame before it, 0 to 1; 0 leaves it out.
+    pub third_frame: f64,
+    /// The weight of the previous pair's flow where it equals the new one, 0 to 1; 0 leaves it out. It falls to half where they
+    /// differ by 0.2 px.
+    pub carry: f64,
 }
 
 impl FarnebackTv {
@@ -79,6 +90,8 @@ impl FarnebackTv {
             samples: 2,
             spacing: 3,
             nonlocal_scale: 0.5,
+            third_frame: 0.0,
+            carry: 0.0,
         }
     }
 
@@ -123,7 +136,17 @@ impl Estimator for FarnebackTv {
         }
         within("samples", self.samples, 0, 3)?;
         within("spacing", self.spacing, 1, 16)?;
-        within("nonlocal_scale", self.nonlocal_scale, 0.0, 1.0)
+        within("nonlocal_scale", self.nonlocal_scale, 0.0, 1.0)?;
+        within("third_frame", self.third_frame, 0.0, 1.0)?;
+        within("carry", self.carry, 0.0, 1.0)
+    }
+
+    fn has_memory(&self) -> bool {
+        self.frames() > 2 || self.carry > 0.0
+    }
+
+    fn frames(&self) -> u32 {
+        if self.third_frame > 0.0 { 3 } else { 2 }
     }
 
     fn stages(&self, bufs: &mut Bufs, size: Size, wanted: Wanted) -> Box<dyn Stages> {

@@ -17,6 +17,8 @@ impl Parameters for FarnebackTv {
         Parameter::number("samples", "N", "Radius of the non-local step's grid in samples, 0 to 3; 0 leaves the step out"),
         Parameter::number("spacing", "PX", "Distance of its samples in pixels, 1 to 16"),
         Parameter::number("nonlocal_scale", "RATIO", "Smallest scale of the levels that end with a non-local step, 0 to 1"),
+        Parameter::number("third_frame", "WEIGHT", "In a stream, weight of the frame before the pair, 0 to 1, for example 0.5; 0 leaves it out"),
+        Parameter::number("carry", "WEIGHT", "In a stream, weight of the previous pair's flow, 0 to 1, for example 0.5; 0 leaves it out"),
     ];
     const PRESETS: &'static [Choice] = &[
         ("fast", "Half the size, 1 warp: for slow computers"),
@@ -53,6 +55,8 @@ impl Parameters for FarnebackTv {
             "samples" => self.samples.to_string(),
             "spacing" => self.spacing.to_string(),
             "nonlocal_scale" => self.nonlocal_scale.to_string(),
+            "third_frame" => self.third_frame.to_string(),
+            "carry" => self.carry.to_string(),
             _ => return None,
         })
     }
@@ -68,6 +72,8 @@ impl Parameters for FarnebackTv {
             "samples" => self.samples = read(Self::LIST, name, value)?,
             "spacing" => self.spacing = read(Self::LIST, name, value)?,
             "nonlocal_scale" => self.nonlocal_scale = read(Self::LIST, name, value)?,
+            "third_frame" => self.third_frame = read(Self::LIST, name, value)?,
+            "carry" => self.carry = read(Self::LIST, name, value)?,
             _ => return Err(wrong(Self::LIST, name, value)),
         }
         Ok(())

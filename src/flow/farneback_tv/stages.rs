@@ -1,15 +1,17 @@
 //! The buffers and steps of the method.
 
 use super::FarnebackTv;
-use super::buffers::{Confidence, Enlarged, Fit, Slopes, Window};
+use super::buffers::{Confidence, Fit, Slopes, Window};
+use super::iterations::{iterations, warped, warps};
+use super::memory::{PreviousFlow, ThirdFrame};
 use crate::flow::coarse_to_fine::{CoarseToFine, Iteration};
 use crate::flow::expansions::{Expanded, Expansion, Expansions};
 use crate::flow::levels::levels_down_to;
 use crate::flow::{Evidence, Level, Stages, Wanted};
 use crate::frame::Size;
 use crate::kernels::{
-    expected_slope, fit_weight, links, misfit, nonlocal, resample_x, resample_y, robust_equations, slope_weights,
-    smoothness, solve_increment, sweep, upsample, weighted_robust_equations, window_y,
+    expected_slope, fit_weight, links, misfit, nonlocal, robust_equations, slope_weights, smoothness, solve_increment, sweep,
+    upsample, weighted_robust_equations, window_y,
 };
 use crate::plan::{BufId, Bufs, Shape, Step};
 
@@ -20,11 +22,11 @@ const INCREMENT_WINDOW: (usize, f64) = (8, 2.5);
 /// Slopes are averaged on levels of this scale and coarser ones.
 const SLOPE_SCALE: f64 = 0.25;
 /// The share of its Hessian by which an expansion is continued to a place between pixels.
-const KAPPA: f32 = 0.3;
+pub(super) const KAPPA: f32 = 0.3;
 /// ζ²: the floor of the squared slope that divides an equation.
-const FLOOR: f32 = 0.25;
+pub(super) const FLOOR: f32 = 0.25;
 /// ε²: the squared residual, in square pixels, up to which the equations' robust weight is nearly constant.
-const ROBUST: f32 = 0.01;
+pub(super) const ROBUST: f32 = 0.01;
 /// What is added to the determinant of a window's equations.
 const REGULAR: f32 = 1e-6;
 /// The squared difference of slopes at which their weight in the mean is ½.
@@ -51,16 +53,21 @@ pub(super) struct FarnebackTvStages {
     link: BufId,
     fit: Option<Fit>,
     confidence: Option<Confidence>,
+    /// The certainty of frames that have none.
+    full_certainty: Option<BufId>,
+    third_frame: Option<ThirdFrame>,
+    previous_flow: Option<PreviousFlow>,
 }
 
-/// The warps of a computed level.
-fn warps(config: &FarnebackTv, k: usize, finest: usize) -> u32 {
-    if k == finest { config.warps } else { config.coarse_warps }
-}
-
-/// The writes of the flow on a level: the windowed increment, two runs of sweeps per warp, and the non-local step.
-fn iterations(config: &FarnebackTv, k: usize, finest: usize, nonlocal: usize) -> u32 {
-    if k < finest { 0 } else { 1 + 2 * warps(config, k, finest) + u32::from(k < finest + nonlocal) }
+/// The images of a pair.
+#[derive(Clone, Copy)]
+struct Images {
+    /// The parity of the later one's frame.
+    parity: usize,
+    /// The slot of the first one.
+    first_slot: usize,
+    /// Their expansions on a level.
+    expansions: [Expansion; 2],
 }
 
 impl FarnebackTvStages {
@@ -92,8 +99,13 @@ impl FarnebackTvStages {
             smooth_weight: bufs.computed("smoothness", one),
             system: bufs.computed("system", five),
             link: bufs.computed("links", two),
-            fit: (nonlocal > 0 || confidence).then(|| Fit::new(bufs, own, wanted.certainty, nonlocal > 0)),
+            fit: (nonlocal > 0 || confidence).then(|| Fit::new(bufs, own, nonlocal > 0)),
             confidence: confidence.then(|| Confidence::new(bufs, own, size)),
+            full_certainty: (!wanted.certainty && (nonlocal > 0 || confidence || config.third_frame > 0.0))
+                .then(|| bufs.constant("full certainty", vec![1.0; one.len()])),
+            third_frame: (config.third_frame > 0.0)
+                .then(|| ThirdFrame::new(bufs, config, &levels, finest, wanted)),
+            previous_flow: (config.carry > 0.0).then(|| PreviousFlow::new(bufs, config, own, wanted)),
             finest,
             nonlocal,
             levels,
@@ -109,6 +121,21 @@ impl FarnebackTvStages {
         iterations(&self.config, k, self.finest, self.nonlocal)
     }
 
+    /// The writes of the flow up to the last warp.
+    fn warped(&self, k: usize) -> u32 {
+        warped(&self.config, k, self.finest)
+    }
+
+    /// The certainty of an expansion.
+    fn certainty(&self, expansion: Expansion) -> BufId {
+        self.full_certainty.or(expansion.certainty).unwrap_or_else(|| unreachable!("there is one of the two"))
+    }
+
+    /// The buffer of the equations that are solved.
+    fn solved_equations(&self) -> BufId {
+        self.third_frame.as_ref().map_or(self.equations, |third| third.equations)
+    }
+
     /// The buffer of the slopes that are expected on a level, once its first iteration has run.
     fn slope(&self, k: usize) -> BufId {
         match k + 1 == self.levels.len() && !self.averages_slopes(k) {
@@ -121,17 +148,19 @@ impl FarnebackTvStages {
         self.levels[k].scale <= SLOPE_SCALE + 1e-6 && warps(&self.config, k, self.finest) > 0
     }
 
-    fn iterate(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [Expansion; 2], slot: usize) {
-        let (k, last) = (iteration.k, self.iterations(iteration.k));
+    fn iterate(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: Images) {
+        let (k, warped) = (iteration.k, self.warped(iteration.k));
         if iteration.number == 1 {
             self.read_slopes(steps, iteration);
             self.increment(steps, iteration, pair);
-        } else if iteration.number == last && self.is_nonlocal(k) {
-            self.nonlocal(steps, iteration, pair, slot);
+        } else if iteration.number == warped + 1 && self.is_nonlocal(k) {
+            self.nonlocal(steps, iteration, pair);
+        } else if iteration.number > warped {
+            steps.extend(self.previous_flow.iter().map(|previous| previous.step(pair.parity, iteration)));
         } else {
             if iteration.number.is_multiple_of(2) {
                 self.equations(steps, iteration, pair);
-                self.smoothness(steps, iteration, pair[0]);
+                self.smoothness(steps, iteration, pair.expansions[0]);
             }
             let size = iteration.level.size;
             steps.push(Step::new(
@@ -163,7 +192,8 @@ impl FarnebackTvStages {
         steps.push(Step::new(&upsample::KERNEL, iteration.label.clone(), params, &inputs, &output));
     }
 
-    fn equations(&self, steps: &mut Vec<Step>, iteration: &Iteration, [first, second]: [Expansion; 2]) {
+    fn equations(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: Images) {
+        let [first, second] = pair.expansions;
         let size = iteration.level.size;
         let params = robust_equations::Params {
             width: size.width,
@@ -200,10 +230,13 @@ impl FarnebackTvStages {
                 &output,
             ),
         });
+        if let Some(third) = &self.third_frame {
+            third.add(steps, pair.parity, iteration, first, [self.certainty(first), self.equations]);
+        }
     }
 
     /// The increment that solves the equations averaged over a window.
-    fn increment(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [Expansion; 2]) {
+    fn increment(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: Images) {
         self.equations(steps, iteration, pair);
         let (width, height) = (iteration.level.size.width, iteration.level.size.height);
         let radius = self.increment.radius as u32;
@@ -223,7 +256,7 @@ impl FarnebackTvStages {
             &window_y::KERNEL,
             iteration.label.clone(),
             window_y::Params { width, height, radius: window.radius as u32 },
-            &[self.equations, window.y],
+            &[self.solved_equations(), window.y],
             &[(self.columns, Shape::planar(iteration.level.size, 5))],
         ));
     }
@@ -260,7 +293,7 @@ impl FarnebackTvStages {
         };
         let inputs = [so_far, slope, first.quad];
         steps.push(Step::new(&smoothness::KERNEL, label.clone(), params, &inputs, &[(self.smooth_weight, one)]));
-        let inputs = [self.equations, so_far, self.smooth_weight, slope];
+        let inputs = [self.solved_equations(), so_far, self.smooth_weight, slope];
         let outputs = [(self.system, five), (self.link, two)];
         steps.push(Step::new(&links::KERNEL, label.clone(), links::Params { width, height }, &inputs, &outputs));
     }
@@ -270,7 +303,7 @@ impl FarnebackTvStages {
         let Some(fit) = &self.fit else { return };
         let [first, second] = pair;
         let (width, height, plane) = (level.size.width, level.size.height, Shape::planar(level.size, 1));
-        let certainty = fit.certainty.or(first.certainty).unwrap_or_else(|| unreachable!("there is one of the two"));
+        let certainty = self.certainty(first);
         steps.push(Step::new(
             &misfit::KERNEL,
             label,
@@ -280,11 +313,11 @@ impl FarnebackTvStages {
         ));
     }
 
-    fn nonlocal(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: [Expansion; 2], slot: usize) {
+    fn nonlocal(&self, steps: &mut Vec<Step>, iteration: &Iteration, pair: Images) {
         let Iteration { k, level, so_far, flow, ref label, .. } = *iteration;
         let (Some(fit), Some(images)) = (&self.fit, self.expansions.images[k]) else { return };
         let Some(weight) = fit.weight else { return };
-        self.misfit(steps, label, level, pair, so_far);
+        self.misfit(steps, label, level, pair.expansions, so_far);
         let Size { width, height } = level.size;
         let plane = [(weight, Shape::planar(level.size, 1))];
         let params = fit_weight::Params { width, height };
@@ -301,7 +334,7 @@ impl FarnebackTvStages {
             tone: 1.0 / (20.0 * 20.0),
             robust: 0.05 * 0.05,
         };
-        let inputs = [so_far, self.slope(k), images[slot], weight];
+        let inputs = [so_far, self.slope(k), images[pair.first_slot], weight];
         let output = [(flow, Shape::planar(level.size, 2))];
         steps.push(Step::new(&nonlocal::KERNEL, label.clone(), params, &inputs, &output));
     }
@@ -310,40 +343,8 @@ impl FarnebackTvStages {
     fn judge(&self, steps: &mut Vec<Step>, pair: [Expansion; 2], flow: BufId) {
         let (Some(fit), Some(confidence)) = (&self.fit, &self.confidence) else { return };
         let level = self.levels[self.finest];
-        let label = "confidence";
-        self.misfit(steps, label, level, pair, flow);
-        let Size { width, height } = level.size;
-        let plane = Shape::planar(level.size, 1);
-        let taps = confidence.taps;
-        let [place_x, place_y] = confidence.place;
-        steps.push(Step::new(
-            &resample_y::KERNEL,
-            label,
-            resample_y::Params { width, height, in_height: height, taps },
-            &[fit.agreement, confidence.gauss, place_y],
-            &[(confidence.columns, plane)],
-        ));
-        let whole = confidence.enlarged.map_or(confidence.plane, |enlarged| enlarged.from);
-        steps.push(Step::new(
-            &resample_x::KERNEL,
-            label,
-            resample_x::Params { width, height, in_width: width, taps },
-            &[confidence.columns, confidence.gauss, place_x],
-            &[(whole, plane)],
-        ));
-        if let Some(Enlarged { place: [place_x, place_y], .. }) = confidence.enlarged {
-            let full = self.levels[0].size;
-            let params = upsample::Params {
-                width: full.width,
-                height: full.height,
-                in_width: width,
-                in_height: height,
-                scale: 1.0,
-                channels: 1,
-            };
-            let output = [(confidence.plane, Shape::planar(full, 1))];
-            steps.push(Step::new(&upsample::KERNEL, label, params, &[whole, place_x, place_y], &output));
-        }
+        self.misfit(steps, Confidence::LABEL, level, pair, flow);
+        confidence.average(steps, fit.agreement, level.size, self.levels[0].size);
     }
 }
 
@@ -352,14 +353,21 @@ impl Stages for FarnebackTvStages {
         self.expansions.steps(gray, certainty, slot)
     }
 
-    fn pair(&self, _parity: usize, [first, second]: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
-        let pair = |k: usize| [first, second].map(|slot| self.expansions.level(k, slot));
+    fn pair(&self, parity: usize, slots: [usize; 2], initial: BufId, flow: BufId) -> Vec<Step> {
+        let expansions = |k: usize| slots.map(|slot| self.expansions.level(k, slot));
         let iterations = |k: usize| self.iterations(k);
         let mut steps = self.coarse_to_fine.steps(iterations, initial, flow, |steps, iteration| {
-            self.iterate(steps, &iteration, pair(iteration.k), first);
+            let pair = Images { parity, first_slot: slots[0], expansions: expansions(iteration.k) };
+            self.iterate(steps, &iteration, pair);
         });
         let finest = self.coarse_to_fine.flow(self.finest).unwrap_or(flow);
-        self.judge(&mut steps, pair(self.finest), finest);
+        self.judge(&mut steps, expansions(self.finest), finest);
+        if let Some(third) = &self.third_frame {
+            for (k, level) in self.levels.iter().enumerate().skip(self.finest) {
+                let kept = expansions(k)[third.kept];
+                third.keep(&mut steps, parity, (k, level.size), kept, self.certainty(kept));
+            }
+        }
         steps
     }
 
@@ -370,5 +378,10 @@ impl Stages for FarnebackTvStages {
     fn evidence(&self, _slots: [usize; 2]) -> Evidence {
         let plane = self.confidence.as_ref().map(|confidence| confidence.plane);
         Evidence::Confidence(plane.unwrap_or_else(|| unreachable!("it was wanted")))
+    }
+
+    fn carried(&self) -> Vec<[BufId; 2]> {
+        let expansions = self.third_frame.iter().flat_map(ThirdFrame::carried);
+        expansions.chain(self.previous_flow.iter().map(|previous| previous.state)).collect()
     }
 }

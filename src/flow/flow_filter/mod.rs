@@ -61,7 +61,9 @@ impl Default for FlowFilter {
 }
 
 impl Estimator for FlowFilter {
-    const HAS_MEMORY: bool = true;
+    fn has_memory(&self) -> bool {
+        true
+    }
 
     fn validate(&self) -> Result<()> {
         within("gamma", self.gamma, 0.01, 1e5)?;
