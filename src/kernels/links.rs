@@ -51,7 +51,7 @@ fn reference(
     let (width, height, stride) = dimensions(p.width, p.height);
     let split = Split {
         second_row: 2 * stride,
-        scratch: 9 * stride,
+        scratch: 4 * stride,
         dearer: 2,
         ..Split::rows_of(5 * stride)
     };
@@ -64,37 +64,53 @@ fn reference(
             let (right, down) = link.split_at_mut(stride);
             let up_exists = if y > 0 { 0.5 } else { 0.0 };
             let down_exists = if y + 1 < height { 0.5 } else { 0.0 };
-            // The links to the left and up, and what the expected slopes add to x and to y.
+            // The links to the left and up, and what the expected slopes add to x and to y. Slices of one length spare the
+            // loops a check per pixel.
             let (left, rest) = band.scratch.split_at_mut(stride);
             let (up, added) = rest.split_at_mut(stride);
+            let (left, up, added) = (&mut left[..width], &mut up[..width], &mut added[..2 * stride]);
+            let [weights_above, weights, weights_below] = weights.map(|row| &row[..width]);
+            let (right_row, down_row) = (&mut right[..width], &mut down[..width]);
             for x in 0..width {
-                up[x] = up_exists * (weights[1][x] + weights[0][x]);
-                down[x] = down_exists * (weights[1][x] + weights[2][x]);
+                up[x] = up_exists * (weights[x] + weights_above[x]);
+                down_row[x] = down_exists * (weights[x] + weights_below[x]);
             }
-            for ((link, a), b) in right[..width - 1].iter_mut().zip(weights[1]).zip(&weights[1][1..width]) {
+            for ((link, a), b) in right_row[..width - 1].iter_mut().zip(weights).zip(&weights[1..]) {
                 *link = 0.5 * (a + b);
             }
-            right[width - 1] = 0.0;
+            right_row[width - 1] = 0.0;
             left[0] = 0.0;
-            left[1..width].copy_from_slice(&right[..width - 1]);
-            let slopes = [above, y, below].map(|y| four_rows(slope, y, stride));
-            for (channel, added) in added.chunks_exact_mut(stride).take(2).enumerate() {
+            left[1..].copy_from_slice(&right_row[..width - 1]);
+            let (left, up, right, down) = (&*left, &*up, &*right_row, &*down_row);
+            let slopes = [above, y, below].map(|y| four_rows(slope, y, stride).map(|row| &row[..width]));
+            for (channel, added) in added.chunks_exact_mut(stride).enumerate() {
+                let added = &mut added[..width];
                 let along_x = slopes[1][2 * channel];
                 let [above, here, below] = [0, 1, 2].map(|i| slopes[i][2 * channel + 1]);
+                let horizontal = |x: usize, before: usize, next: usize| {
+                    left[x] * (along_x[x] + along_x[before]) - right[x] * (along_x[x] + along_x[next])
+                };
+                added[0] = horizontal(0, 0, 1.min(width - 1));
+                added[width - 1] = horizontal(width - 1, width.saturating_sub(2), width - 1);
+                if let Some(inner) = width.checked_sub(2) {
+                    let added = &mut added[1..][..inner];
+                    let (left, right) = (&left[1..][..inner], &right[1..][..inner]);
+                    let (before, along, next) = (&along_x[..inner], &along_x[1..][..inner], &along_x[2..][..inner]);
+                    for x in 0..inner {
+                        added[x] = left[x] * (along[x] + before[x]) - right[x] * (along[x] + next[x]);
+                    }
+                }
                 for x in 0..width {
                     let vertical = up[x] * (here[x] + above[x]) - down[x] * (here[x] + below[x]);
-                    let next = (x + 1).min(width - 1);
-                    let before = x.saturating_sub(1);
-                    let horizontal =
-                        left[x] * (along_x[x] + along_x[before]) - right[x] * (along_x[x] + along_x[next]);
-                    added[x] = 0.5 * (horizontal + vertical);
+                    added[x] = 0.5 * (added[x] + vertical);
                 }
             }
-            let (added_x, added_y) = added[..2 * stride].split_at(stride);
-            let (u, v) = flow[2 * y * stride..][..2 * stride].split_at(stride);
+            let (added_x, added_y) = added.split_at(stride);
+            let (added_x, added_y) = (&added_x[..width], &added_y[..width]);
+            let [u, v] = [0, 1].map(|channel| &flow[(2 * y + channel) * stride..][..width]);
             let [g_xx, g_xy, g_yy, q_x, q_y] =
-                [0, 1, 2, 3, 4].map(|channel| &equations[(5 * y + channel) * stride..][..stride]);
-            let mut channels = system.chunks_exact_mut(stride);
+                [0, 1, 2, 3, 4].map(|channel| &equations[(5 * y + channel) * stride..][..width]);
+            let mut channels = system.chunks_exact_mut(stride).map(|row| &mut row[..width]);
             let [Some(xx), Some(xy), Some(yy), Some(c_x), Some(c_y)] = [(); 5].map(|()| channels.next()) else {
                 unreachable!("there are five channels");
             };

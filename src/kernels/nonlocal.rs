@@ -63,6 +63,7 @@ fn reference(p: &Params, flow: &[f32], slope: &[f32], image: &[f32], weight: &[f
         let mut weights = [[0.0; BLOCK]; MOST];
         let mut us = [[0.0; BLOCK]; MOST];
         let mut vs = [[0.0; BLOCK]; MOST];
+        let mut room = [[0.0; BLOCK]; 4];
         for (i, rows) in band.out.chunks_exact_mut(2 * stride).enumerate() {
             let y = band.y0 + i;
             let slopes = four_rows(slope, y, stride);
@@ -72,21 +73,24 @@ fn reference(p: &Params, flow: &[f32], slope: &[f32], image: &[f32], weight: &[f
                 let slopes = slopes.map(|slope| block(slope, x0, count));
                 let gray = block(own, x0, count);
                 for (n, &[dx, dy, near]) in samples.iter().enumerate() {
+                    let sample = [&mut weights[n], &mut us[n], &mut vs[n]];
                     let row = y as isize + dy as isize;
-                    let of_row = (0..height as isize).contains(&row);
-                    let row = if of_row { row as usize } else { y };
-                    let at = x0 as isize + dx as isize;
-                    let read = |plane: &[f32]| sampled(plane, at, width, count);
-                    let (u, v) = (read(&flow[2 * row * stride..]), read(&flow[(2 * row + 1) * stride..]));
-                    let (tone, fit) = (read(&image[row * stride..]), read(&weight[row * stride..]));
+                    if !(0..height as isize).contains(&row) {
+                        sample.into_iter().for_each(|block| block.fill(0.0));
+                        continue;
+                    }
+                    let (row, at) = (row as usize, x0 as isize + dx as isize);
+                    let [room_u, room_v, room_tone, room_fit] = &mut room;
+                    let u = sampled(&flow[2 * row * stride..][..width], at, room_u);
+                    let v = sampled(&flow[(2 * row + 1) * stride..][..width], at, room_v);
+                    let tone = sampled(&image[row * stride..][..width], at, room_tone);
+                    let fit = sampled(&weight[row * stride..][..width], at, room_fit);
+                    let [weights, us, vs] = sample;
                     for i in 0..BLOCK {
-                        let column = at + i as isize;
-                        let inside = of_row & (column >= 0) & (column < width as isize);
                         let off = tone[i] - gray[i];
-                        let w = fit[i] * near / (1.0 + off * off * p.tone);
-                        weights[n][i] = if inside { w } else { 0.0 };
-                        us[n][i] = u[i] - (slopes[0][i] * dx + slopes[1][i] * dy);
-                        vs[n][i] = v[i] - (slopes[2][i] * dx + slopes[3][i] * dy);
+                        weights[i] = fit[i] * near / (1.0 + off * off * p.tone);
+                        us[i] = u[i] - (slopes[0][i] * dx + slopes[1][i] * dy);
+                        vs[i] = v[i] - (slopes[2][i] * dx + slopes[3][i] * dy);
                     }
                 }
                 let (u, v) = rows.split_at_mut(stride);
@@ -153,18 +157,21 @@ fn block(row: &[f32], x0: usize, count: usize) -> Block {
     values
 }
 
-/// As [`block`], from a column on that may be outside the row, whose values there are those of its ends.
+/// The block of a row from column `at` on, which may be outside the row; zeros there, so that samples outside have no weight.
 #[inline(always)]
-fn sampled(row: &[f32], at: isize, width: usize, count: usize) -> Block {
-    let mut values = [0.0; BLOCK];
-    if at >= 0 && at as usize + BLOCK <= width {
-        values.copy_from_slice(&row[at as usize..][..BLOCK]);
-    } else {
-        for (i, value) in values[..count].iter_mut().enumerate() {
-            *value = row[(at + i as isize).clamp(0, width as isize - 1) as usize];
-        }
+fn sampled<'a>(row: &'a [f32], at: isize, room: &'a mut Block) -> &'a Block {
+    if let Ok(at) = usize::try_from(at)
+        && let Some(block) = row.get(at..).and_then(<[f32]>::first_chunk)
+    {
+        return block;
     }
-    values
+    let within = |column: isize| (column - at).clamp(0, BLOCK as isize) as usize;
+    let (from, to) = (within(0), within(row.len() as isize));
+    room.fill(0.0);
+    if from < to {
+        room[from..to].copy_from_slice(&row[(at + from as isize) as usize..][..to - from]);
+    }
+    room
 }
 
 fn cases(size: Size) -> Vec<Case> {

@@ -40,12 +40,12 @@ fn reference(p: &Params, flow: &[f32], slope: &[f32], weighted: &mut [f32]) {
         for (i, rows) in band.out.chunks_exact_mut(5 * stride).enumerate() {
             let y = band.y0 + i;
             slopes_of_row(flow, y, [width, height, stride], band.scratch);
-            let mut channels = rows.chunks_exact_mut(stride);
+            let mut channels = rows.chunks_exact_mut(stride).map(|row| &mut row[..width]);
             let [Some(weight), Some(a), Some(b), Some(c), Some(d)] = [(); 5].map(|()| channels.next()) else {
                 unreachable!("there are five channels");
             };
-            let [ux, uy, vx, vy] = four_rows(band.scratch, 0, stride);
-            let [tux, tuy, tvx, tvy] = four_rows(slope, y, stride);
+            let [ux, uy, vx, vy] = four_rows(band.scratch, 0, stride).map(|row| &row[..width]);
+            let [tux, tuy, tvx, tvy] = four_rows(slope, y, stride).map(|row| &row[..width]);
             for x in 0..width {
                 let [p0, p1, p2, p3] = [ux[x] - tux[x], uy[x] - tuy[x], vx[x] - tvx[x], vy[x] - tvy[x]];
                 let w = p.spread / (p.spread + (p0 * p0 + p1 * p1 + p2 * p2 + p3 * p3));

@@ -51,14 +51,14 @@ fn reference(p: &Params, flow: &[f32], slope: &[f32], quad: &[f32], smooth_weigh
         for (i, row) in band.out.chunks_exact_mut(stride).enumerate() {
             let y = band.y0 + i;
             slopes_of_row(flow, y, [width, height, stride], band.scratch);
-            let [ux, uy, vx, vy] = four_rows(band.scratch, 0, stride);
-            let [tux, tuy, tvx, tvy] = four_rows(slope, y, stride);
-            let quad = &quad[y * stride..][..stride];
+            let [ux, uy, vx, vy] = four_rows(band.scratch, 0, stride).map(|row| &row[..width]);
+            let [tux, tuy, tvx, tvy] = four_rows(slope, y, stride).map(|row| &row[..width]);
+            let (quad, out) = (&quad[y * stride..][..width], &mut row[..width]);
             for x in 0..width {
                 let [b_x, b_y, ..] = quad[x];
                 let edge = p.beta + (1.0 - p.beta) / (1.0 + (b_x * b_x + b_y * b_y) * p.edge);
                 let [p0, p1, p2, p3] = [ux[x] - tux[x], uy[x] - tuy[x], vx[x] - tvx[x], vy[x] - tvy[x]];
-                row[x] = p.alpha * edge / (p0 * p0 + p1 * p1 + p2 * p2 + p3 * p3 + p.robust).sqrt();
+                out[x] = p.alpha * edge / (p0 * p0 + p1 * p1 + p2 * p2 + p3 * p3 + p.robust).sqrt();
             }
             repeat_last(row, width);
         }

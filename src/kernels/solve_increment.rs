@@ -44,9 +44,12 @@ kernel!(
 fn reference(p: &Params, columns: &[f32], window: &[f32], so_far: &[f32], flow: &mut [f32]) {
     let stride = Size::new(p.width, p.height).stride();
     average(&p.window(), columns, window, flow, 2, #[inline(always)] |y, averages, rows| {
+        let width = p.width as usize;
         let (u, v) = rows.split_at_mut(stride);
-        let (u_0, v_0) = so_far[2 * y * stride..][..2 * stride].split_at(stride);
-        for x in 0..p.width as usize {
+        let (u, v) = (&mut u[..width], &mut v[..width]);
+        let [u_0, v_0] = [0, 1].map(|channel| &so_far[(2 * y + channel) * stride..][..width]);
+        let averages = averages.map(|average| &average[..width]);
+        for x in 0..width {
             let [d_x, d_y] = displacement(averages.map(|average| average[x]), p.regular);
             u[x] = u_0[x] + d_x;
             v[x] = v_0[x] + d_y;

@@ -47,12 +47,16 @@ fn reference(p: &Params, system: &[f32], link: &[f32], flow: &[f32], relaxed: &m
     // Rows of a band and of its rim, each with a value before and behind, and four rows of room.
     let padded = stride + 2;
     let split = Split { row: 2 * stride, fewest_rows: 64, ..Split::default() };
-    let split = Split { scratch: 2 * padded * (split.most_rows(height) + 2 * HALF_SWEEPS) + 2 * stride, ..split };
+    let split = Split { scratch: 2 * padded * (split.most_rows(height) + 2 * HALF_SWEEPS) + 3 * stride + 1, ..split };
     bands(relaxed, &mut [], split, #[inline(always)] |band| {
         let rows = band.out.len() / (2 * stride);
         let first = band.y0.saturating_sub(HALF_SWEEPS);
         let end = (band.y0 + rows + HALF_SWEEPS).min(height);
-        let (room, flows) = band.scratch.split_at_mut(2 * stride);
+        let (room, flows) = band.scratch.split_at_mut(3 * stride + 1);
+        // ω for every other column; from the second one on it is that of the other colour.
+        for (x, omega) in room[2 * stride..].iter_mut().enumerate() {
+            *omega = if x % 2 == 0 { p.omega } else { 0.0 };
+        }
         for (y, flows) in (first..end).zip(flows.chunks_exact_mut(2 * padded)) {
             for (channel, row) in flows.chunks_exact_mut(padded).enumerate() {
                 row[0] = 0.0;
@@ -65,7 +69,7 @@ fn reference(p: &Params, system: &[f32], link: &[f32], flow: &[f32], relaxed: &m
             let from = if first == 0 { 0 } else { first + half + 1 };
             let to = if end == height { height } else { end - half - 1 };
             for y in from..to {
-                row_of_colour(p, y, half, [system, link], [first, height, width, stride], flows, room);
+                row_of_colour(y, half, [system, link], [first, height, width, stride], flows, room);
             }
         }
         for (i, rows) in band.out.chunks_exact_mut(2 * stride).enumerate() {
@@ -82,7 +86,6 @@ fn reference(p: &Params, system: &[f32], link: &[f32], flow: &[f32], relaxed: &m
 /// neighbours are processed alike, and thrown away.
 #[inline(always)]
 fn row_of_colour(
-    p: &Params,
     y: usize,
     half: usize,
     [system, link]: [&[f32]; 2],
@@ -112,14 +115,13 @@ fn row_of_colour(
                 c[x] + right[x] * next[x] + right[x - 1] * before[x] + down[x] * below[x] + up[x] * above[x];
         }
     }
-    let (pulled_x, pulled_y) = room.split_at(stride);
+    let [pulled_x, pulled_y] = [0, 1].map(|channel| &room[channel * stride..][..width]);
+    let omegas = &room[2 * stride + ((y + half) & 1)..][..width];
     let (rows_before, rows) = flows.split_at_mut(of_row(y, 1));
     let u = &mut rows_before[of_row(y, 0) + 1..][..width];
     let v = &mut rows[1..][..width];
-    let odd = (y + half) & 1;
     for x in 0..width {
-        let omega = if (x ^ odd) & 1 == 0 { p.omega } else { 0.0 };
-        let (a, b) = (pulled_x[x], pulled_y[x]);
+        let (omega, a, b) = (omegas[x], pulled_x[x], pulled_y[x]);
         u[x] += omega * (xx[x] * a + xy[x] * b - u[x]);
         v[x] += omega * (xy[x] * a + yy[x] * b - v[x]);
     }
