@@ -47,12 +47,17 @@ pub struct Startup {
 pub struct KernelFigures {
     /// The kernel's name.
     pub kernel: &'static str,
+    /// Whether only an option uses it: an initial flow, a certainty or the confidence.
+    pub optional: bool,
     /// The number of its steps in a frame.
     pub steps: usize,
     /// Their summed time.
     pub ms: Times,
     /// The bytes that they must at least read and write.
     pub bytes: u64,
+    /// The floating-point operations of their shaders, as [`FlopCounter`](crate::gpu::FlopCounter) counts them. `None` where
+    /// they depend on more than the parameters.
+    pub flops: Option<u64>,
     /// Their throughput in 10⁹ bytes/s.
     pub gb_s: f64,
     /// Their throughput as a share of that of a plain copy. Work that stays in a cache can exceed 1.

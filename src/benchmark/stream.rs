@@ -1,6 +1,7 @@
 //! The time of a frame of a stream, and of each kernel in it.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use super::copy;
 use super::figures::{KernelFigures, Startup, StreamFigures};
@@ -11,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::eval::Scene;
 use crate::flow::{self, Algorithm};
 use crate::frame::{Image, Size};
+use crate::gpu::FlopCounter;
 use crate::plan::{BufId, Plan};
 use crate::stream::{StreamConfig, TimeSource};
 
@@ -61,7 +63,8 @@ pub fn stream(backend: &Backend, size: Size, algorithm: &Algorithm, frames: u32)
     let mut engine = Engine::new(backend.clone(), size, &every_option)?;
     let (_, optional) = kernels_of(&mut engine, &images, frames, copy_gb_s)?;
     let known: Vec<&str> = kernels.iter().map(|figures| figures.kernel).collect();
-    kernels.extend(optional.into_iter().filter(|figures| !known.contains(&figures.kernel)));
+    let optional = optional.into_iter().filter(|figures| !known.contains(&figures.kernel));
+    kernels.extend(optional.map(|figures| KernelFigures { optional: true, ..figures }));
     Ok(StreamFigures {
         backend: name,
         width: size.width,
@@ -106,22 +109,42 @@ fn kernels_of(
         TimeSource::Gpu => "gpu",
         TimeSource::Host => "host",
     };
-    let moved = moved(engine.plan());
+    let work = work(engine.plan())?;
     let figures = sums.into_iter().map(|(kernel, times)| {
-        let (steps, bytes) = moved.get(kernel).copied().unwrap_or_default();
+        let Work { steps, bytes, flops } = work.get(kernel).copied().unwrap_or_default();
         let ms = Times::new(times);
         let gb_s = bytes as f64 / ms.median / 1e6;
-        KernelFigures { kernel, steps, ms, bytes, gb_s, share_of_copy: gb_s / copy_gb_s }
+        KernelFigures {
+            kernel,
+            optional: false,
+            steps,
+            ms,
+            bytes,
+            flops,
+            gb_s,
+            share_of_copy: gb_s / copy_gb_s,
+        }
     });
     Ok((clock, figures.collect()))
 }
 
-/// Per kernel, the number of its steps in a frame and the bytes that they read and write.
+/// The work of a kernel in a frame.
+#[derive(Clone, Copy, Default)]
+struct Work {
+    /// The number of its steps.
+    steps: usize,
+    /// The bytes that they read and write.
+    bytes: u64,
+    flops: Option<u64>,
+}
+
+/// The work of each kernel in a frame.
 ///
 /// Levels share buffers, so an input counts with the size last written to it, not with the size of its buffer.
-fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
+fn work(plan: &Plan) -> Result<HashMap<&'static str, Work>> {
     let mut written: HashMap<BufId, usize> = HashMap::new();
-    let mut moved = HashMap::new();
+    let mut counters = HashMap::new();
+    let mut work = HashMap::new();
     for (parity, step) in [0, 1].into_iter().flat_map(|p| plan.steps(p).map(move |step| (p, step))) {
         let mut values = 0;
         for input in &step.inputs {
@@ -132,12 +155,18 @@ fn moved(plan: &Plan) -> HashMap<&'static str, (usize, u64)> {
             written.insert(*output, shape.len());
         }
         if parity == 1 {
-            let (steps, bytes) = moved.entry(step.kernel.name).or_insert((0, 0));
-            *steps += 1;
-            *bytes += 4 * values as u64;
+            let counter: &FlopCounter = match counters.entry(step.kernel.name) {
+                Entry::Occupied(entry) => entry.into_mut(),
+                Entry::Vacant(entry) => entry.insert(FlopCounter::new(step.kernel)?),
+            };
+            let of_kernel =
+                work.entry(step.kernel.name).or_insert(Work { flops: Some(0), ..Work::default() });
+            of_kernel.steps += 1;
+            of_kernel.bytes += 4 * values as u64;
+            of_kernel.flops = of_kernel.flops.zip(counter.of_step(step)).map(|(sum, own)| sum + own);
         }
     }
-    moved
+    Ok(work)
 }
 
 /// Checks the number of frames to time.

@@ -58,11 +58,7 @@ pub fn reflect(kernel: &Kernel) -> Result<DispatchShape> {
 /// mismatch, too.
 pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchShape> {
     let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
-    let module = naga::front::wgsl::parse_str(kernel.source)
-        .map_err(|error| fail(error.emit_to_string_with_path(kernel.source, kernel.name)))?;
-    let mut validator =
-        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-    let info = validator.validate(&module).map_err(|error| fail(error.emit_to_string(kernel.source)))?;
+    let (module, info) = parse(kernel)?;
     let [entry] = module.entry_points.as_slice() else {
         return Err(fail(format!("{} entry points, expected 1", module.entry_points.len())));
     };
@@ -104,6 +100,17 @@ pub fn reflect_variant(kernel: &Kernel, variant: &Variant) -> Result<DispatchSha
     } else {
         Err(fail(problems.join("; ")))
     }
+}
+
+/// A kernel's shader, parsed and validated.
+pub(super) fn parse(kernel: &Kernel) -> Result<(Module, ModuleInfo)> {
+    let fail = |problem: String| Error::Kernel { kernel: kernel.name.to_owned(), problem };
+    let module = naga::front::wgsl::parse_str(kernel.source)
+        .map_err(|error| fail(error.emit_to_string_with_path(kernel.source, kernel.name)))?;
+    let mut validator =
+        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    let info = validator.validate(&module).map_err(|error| fail(error.emit_to_string(kernel.source)))?;
+    Ok((module, info))
 }
 
 /// The module with each `override` constant replaced by its value.

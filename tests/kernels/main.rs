@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 mod both_sides;
+mod flops;
 mod gpu;
 mod mutations;
 #[path = "../common/need.rs"]

@@ -29,7 +29,7 @@ pub(super) fn stream(figures: &StreamFigures) -> String {
     if figures.kernels.is_empty() {
         return text + "kernels    no times: the device has no timestamps\n";
     }
-    let head = ["kernel", "steps", "median ms", "p99 ms", "moved MB", "GB/s", "of copy"];
+    let head = ["kernel", "steps", "median ms", "p99 ms", "moved MB", "Mflop", "GB/s", "of copy"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for kernel in &figures.kernels {
         rows.push(vec![
@@ -38,15 +38,24 @@ pub(super) fn stream(figures: &StreamFigures) -> String {
             format!("{:.3}", kernel.ms.median),
             format!("{:.3}", kernel.ms.p99),
             format!("{:.2}", kernel.bytes as f64 / 1e6),
+            kernel.flops.map_or_else(|| "-".to_owned(), |flops| format!("{:.1}", flops as f64 / 1e6)),
             format!("{:.2}", kernel.gb_s),
             format!("{:.0} %", 100.0 * kernel.share_of_copy),
         ]);
     }
     text += &table(&rows);
     let sum: f64 = figures.kernels.iter().map(|kernel| kernel.ms.median).sum();
+    let used = || figures.kernels.iter().filter(|kernel| !kernel.optional);
+    let flops: Option<u64> = used().map(|kernel| kernel.flops).sum();
     text + &format!(
-        "all kernels {sum:.2} ms by the {} clock\n",
-        if figures.clock == "gpu" { "GPU's" } else { "host's" }
+        "all kernels {sum:.2} ms by the {} clock; a frame without options: {} steps, {:.0} MB, {}\n",
+        if figures.clock == "gpu" { "GPU's" } else { "host's" },
+        used().map(|kernel| kernel.steps).sum::<usize>(),
+        used().map(|kernel| kernel.bytes).sum::<u64>() as f64 / 1e6,
+        flops.map_or_else(
+            || "operations not counted".to_owned(),
+            |flops| format!("{:.0} Mflop", flops as f64 / 1e6)
+        ),
     )
 }
 
