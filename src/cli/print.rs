@@ -61,9 +61,7 @@ pub(super) fn note(text: impl std::fmt::Display) {
 
 /// What to know about a pair that is computed without those before it, by an algorithm that has memory.
 pub(super) fn alone(run: &str) -> String {
-    format!(
-        "{run} corrects the flow of earlier pairs, and warms up over about 20 of them: a pair alone has more error"
-    )
+    format!("{run} uses earlier pairs of its stream: a pair alone, which has none, has more error")
 }
 
 /// Says that a shard of this many jobs (such as "3 pairs") has none.

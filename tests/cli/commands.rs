@@ -120,7 +120,7 @@ fn an_algorithm_that_needs_a_stream_says_so_for_a_pair() {
         run(&folder, &all)
             .well()
             .stderr
-            .contains("flow-filter corrects the flow of earlier pairs, and warms up")
+            .contains("flow-filter uses earlier pairs of its stream: a pair alone")
     };
     assert!(told(&["0.png", "1.png"]));
     assert!(!told(&["0.png", "1.png", "--quiet"]) && !told(&["%d.png"]));

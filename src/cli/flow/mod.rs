@@ -112,12 +112,12 @@ impl Flow {
         let mut source = Source::open(&self.inputs, self.raw)?;
         let single = self.inputs.len() == 2 && source.len() == Some(2);
         self.check(single)?;
-        if source.len() == Some(2) && algorithm.has_memory() && !self.quiet {
+        let frames = algorithm.frames();
+        if source.len() == Some(2) && frames == 2 && algorithm.has_memory() && !self.quiet {
             print::note(print::alone(algorithm.name()));
         }
         let targets = Targets::new(self, single)?;
         let images = source.first_two()?;
-        let (frames, has_memory) = (algorithm.frames(), algorithm.has_memory());
         let third = if frames > 2 { Some(source.third()?) } else { None };
         let (size, first) = (images[0].size, &self.inputs[0]);
         let given = Given {
@@ -139,9 +139,7 @@ impl Flow {
         let done = compute(&mut engine, source, Begin { images, third }, given, targets, &progress);
         progress.finish();
         let report = done?;
-        if single && has_memory {
-            print::note("earlier pairs of a stream count too, and two images alone have none");
-        } else if frames > 2 {
+        if frames > 2 && !self.quiet {
             print::note("the first pair has no older frame: its flow is that of two frames");
         }
         if !self.writes_to_stdout() {
