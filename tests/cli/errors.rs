@@ -76,7 +76,7 @@ fn inputs() {
         ),
         (
             &["flow", "a.png", "b.png", "-o", "o.flo", "--algorithm", "farneback-tv", "--third-frame", "NaN"],
-            &["third_frame is NaN, expected 0 to 1"],
+            &["--third-frame is NaN, expected 0 to 1"],
         ),
         (&["flow", "a.png", "wide.png", "-o", "o.flo"], &["wide.png", "41×33", "40×33 as in a.png"]),
         (&["flow", "a.png", "rgb.png", "-o", "o.flo"], &["rgb.png", "rgb8", "gray8 as in a.png"]),
