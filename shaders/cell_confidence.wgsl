@@ -6,6 +6,8 @@ struct Params {
     pitch: vec2f,  // distance of cells in the pinhole's plane
     origin: vec2f, // the first cell's centre there
     focal: vec2f,
+    known_rad: f32, // the largest error of the direction of motion at which the flow has an expected direction
+    near: f32,      // the least distance from it at which there is one, in the pinhole's plane
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -15,10 +17,6 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> confidence: array<f32>; // channels: along, every
 
 const SPAN = vec2u(1u, 1u);
-// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
-const KNOWN_RAD = 0.3;
-// The least distance from the direction of motion at which it has one, in the pinhole's plane.
-const NEAR = 0.05;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -31,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let every = confidence_of(vec4f(g.x), vec4f(g.y), vec4f(g.z), vec4f(rest), vec4f(coverage)).x;
     let v = motion[3];
     let away = v.z * (params.origin + vec2f(cell) * params.pitch) - v.xy;
-    let expected = v.w < KNOWN_RAD && dot(away, away) > NEAR * NEAR;
+    let expected = v.w < params.known_rad && dot(away, away) > params.near * params.near;
     let along = max(confidence_along(g, rest, coverage, away * params.focal), every);
     if id.x < stride && id.y < params.rows {
         let out = 2u * id.y * stride + id.x;

@@ -30,6 +30,10 @@ params! {
         origin: [f32; 2],
         /// Pixels of a focal length, to the right and down.
         focal: [f32; 2],
+        /// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
+        known_rad: f32,
+        /// The least distance from the direction of motion at which it has one, in the pinhole's plane.
+        near: f32,
     }
 }
 
@@ -47,10 +51,6 @@ kernel!(
 
 /// Channels of the result: along the expected direction, and in every direction.
 pub const CHANNELS: usize = 2;
-/// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
-const KNOWN_RAD: f32 = 0.3;
-/// The least distance from the direction of motion at which it has one, in the pinhole's plane.
-const NEAR: f32 = 0.05;
 
 fn reference(p: &Params, evidence: &[f32], motion: &[f32], confidence: &mut [f32]) {
     let (columns, _, stride) = dimensions(p.columns, p.rows);
@@ -66,7 +66,7 @@ fn reference(p: &Params, evidence: &[f32], motion: &[f32], confidence: &mut [f32
                     p.origin[1] + row as f32 * p.pitch[1],
                 ];
                 let away = [v_z * plane[0] - v_x, v_z * plane[1] - v_y];
-                let expected = v_error < KNOWN_RAD && away[0] * away[0] + away[1] * away[1] > NEAR * NEAR;
+                let expected = v_error < p.known_rad && away[0] * away[0] + away[1] * away[1] > p.near * p.near;
                 let e = [away[0] * p.focal[0], away[1] * p.focal[1]];
                 let along = if expected { confidence_along(mean, e).max(every) } else { every };
                 (out[column], out[stride + column]) = (along, every);
@@ -84,6 +84,8 @@ fn cases(size: Size) -> Vec<Case> {
         pitch: [0.02, 0.03],
         origin: [-0.2, -0.3],
         focal: [200.0, 210.0],
+        known_rad: 0.3,
+        near: 0.05,
     };
     each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
         let mut evidence = planes(extent, 5, fill, [0.0, 1.0], 3);

@@ -9,6 +9,11 @@ use crate::frame::Size;
 use crate::kernels::{cell_confidence, cell_evidence, cell_mean, cells, looming, sectors, spherical_flow};
 use crate::plan::{BufId, Bufs, Port, PortKind, Shape, Step};
 
+/// The largest standard error of the direction of motion at which the flow has an expected direction, radians.
+const KNOWN_RAD: f32 = 0.3;
+/// The least distance from the direction of motion at which it has one, in the pinhole's plane.
+const NEAR: f32 = 0.05;
+
 /// Builds the steps from the flow to the sectors.
 pub(super) struct Aggregation<'a> {
     ideal: &'a Camera,
@@ -98,7 +103,7 @@ impl<'a> Aggregation<'a> {
             Evidence::Expansions([quad_0, cross_0, quad_1, cross_1]) => {
                 let inputs = [quad_0, cross_0, quad_1, cross_1, certainty[0], certainty[1], flow];
                 steps.push(Step::new(&cell_evidence::KERNEL, "sphere", samples, &inputs, &[self.evidence]));
-                let params = confidence_params(self.ideal, self.cells_at);
+                let params = confidence_params(self.view, self.ideal, self.cells_at);
                 let inputs = [self.evidence.0, motion];
                 steps.push(Step::new(
                     &cell_confidence::KERNEL,
@@ -154,7 +159,7 @@ pub(super) fn looming_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> lo
 }
 
 /// The parameters of the kernel that judges the cells' evidence.
-fn confidence_params(ideal: &Camera, cells: &Cells) -> cell_confidence::Params {
+fn confidence_params(view: &Sphere, ideal: &Camera, cells: &Cells) -> cell_confidence::Params {
     let [origin, pitch] = cells.origin_and_pitch().map(|pair| pair.map(|value| value as f32));
     cell_confidence::Params {
         columns: cells.size.width,
@@ -162,6 +167,8 @@ fn confidence_params(ideal: &Camera, cells: &Cells) -> cell_confidence::Params {
         pitch,
         origin,
         focal: [ideal.f_u as f32, ideal.f_v as f32],
+        known_rad: if view.directional { KNOWN_RAD } else { 0.0 },
+        near: NEAR,
     }
 }
 

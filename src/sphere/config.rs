@@ -40,6 +40,10 @@ pub struct Sphere {
     /// The rank of a sector's upper quantile of nearness rates and divergences, 0.5 to 0.99. The lower quantile's rank
     /// is 1 minus this.
     pub quantile: f64,
+    /// Whether a cell counts by the confidence of its flow along the direction in which translation moves it, where the
+    /// direction of motion is known. Nearness rates of thin things are then known that are else left out; divergences,
+    /// which need the flow in every direction, are less exact. Estimators with a confidence of their own ignore it.
+    pub directional: bool,
     /// The least confidence of a cell that counts, 0.01 to 0.9.
     pub least_confidence: f64,
     /// Standard error of the flow of a cell with confidence 1, in pixels, above 0 and at most 10.
@@ -58,6 +62,7 @@ impl Default for Sphere {
             window: 2,
             sectors: [24, 9],
             quantile: 0.8,
+            directional: false,
             least_confidence: 0.2,
             noise_px: 0.03,
             margin_px: 8.0,

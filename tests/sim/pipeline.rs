@@ -208,7 +208,7 @@ fn the_ideal_picture_may_have_its_own_size_and_fields_are_read() {
                 continue;
             }
             let lengths = [cue.looming, cue.cells, cue.spherical_flow].map(|values| values.map(<[f32]>::len));
-            assert_eq!(lengths, [28 * 19 * 4, 28 * 19 * 5, 200 * 150 * 3].map(Some));
+            assert_eq!(lengths, [28 * 19 * 4, 28 * 19 * 6, 200 * 150 * 3].map(Some));
             assert_eq!(cue.flow.map(|flow| flow.size), Some(ideal.size));
             assert_eq!(cue.invalid, None);
         }

@@ -87,6 +87,8 @@ impl Default for FlightConfig {
                     cell: 4,
                     step: 2,
                     window: 1,
+                    // Steering goes by nearness rates.
+                    directional: true,
                     ..Sphere::default()
                 },
                 // The gyro measures in the body's frame, whose x axis the camera looks along.
