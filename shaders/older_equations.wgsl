@@ -1,4 +1,4 @@
-// Adds to a pair's equations those of the frame before it, which a pixel's motion reaches at a multiple of its displacement.
+// The equations of a pair and of the frame before it. In that frame a pixel is at a multiple of its displacement.
 
 struct Params {
     width: u32,

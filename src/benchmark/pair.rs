@@ -10,8 +10,8 @@ use crate::flow::Algorithm;
 use crate::frame::Frame;
 use crate::quantile::median;
 
-/// Times the flow of a pair, without a confidence: the medians of so many repetitions, 1 and more, after a run that is not
-/// timed.
+/// Measures how long the flow of a pair takes, without a confidence: the median of `repeats` runs, at least 1, after one run
+/// that is not timed.
 ///
 /// # Errors
 /// [`Error::Parameter`] for no repetitions; as [`Engine::new`] and [`Engine::process`].

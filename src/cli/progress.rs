@@ -10,7 +10,7 @@ use super::print;
 /// The time between two lines where there is no terminal: a log stays short, and shows that work goes on.
 const BETWEEN: Duration = Duration::from_secs(10);
 
-/// Progress of long work: a bar on a terminal, elsewhere a line every ten seconds, or nothing at all.
+/// Shows the progress of long work: as a bar on a terminal, otherwise as a line every ten seconds.
 pub(super) struct Progress {
     bar: ProgressBar,
     /// Where there is no terminal; `None` if nothing is to be said.

@@ -1,4 +1,4 @@
-//! The confidence of each cell's flow, from its [`cell_evidence`](super::cell_evidence): along the direction that it is
+//! The confidence of each cell's flow, from its [`cell_evidence`]: along the direction that it is
 //! expected to have, and in every direction.
 //!
 //! The flow that translation causes points away from the direction of motion. A thin upright thing says little of its
@@ -10,6 +10,7 @@
 //! Near the direction of motion, or where that is not known, no direction is expected, and both channels are the same.
 
 use super::bearings::rows;
+use super::cell_evidence;
 use super::confidence::{confidence_along, confidence_of};
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::spherical_flow::motion_case;
@@ -59,7 +60,7 @@ fn reference(p: &Params, evidence: &[f32], motion: &[f32], confidence: &mut [f32
         for (i, out) in band.out.chunks_exact_mut(CHANNELS * stride).enumerate() {
             let row = band.y0 + i;
             for column in 0..columns {
-                let mean: [f32; 5] = std::array::from_fn(|k| evidence[(5 * row + k) * stride + column]);
+                let mean: [f32; cell_evidence::CHANNELS] = std::array::from_fn(|k| evidence[(cell_evidence::CHANNELS * row + k) * stride + column]);
                 let every = confidence_of(mean);
                 let plane = [
                     p.origin[0] + column as f32 * p.pitch[0],
@@ -88,10 +89,10 @@ fn cases(size: Size) -> Vec<Case> {
         near: 0.05,
     };
     each_fill(Fill::NUMBERS, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
-        let mut evidence = planes(extent, 5, fill, [0.0, 1.0], 3);
+        let mut evidence = planes(extent, cell_evidence::CHANNELS, fill, [0.0, 1.0], 3);
         let mut random = Random::new(4);
         let stride = extent.stride();
-        for rows in evidence.chunks_exact_mut(5 * stride) {
+        for rows in evidence.chunks_exact_mut(cell_evidence::CHANNELS * stride) {
             for column in 0..stride {
                 // A matrix AᵀA, of eigenvalues in a ratio of up to a hundred.
                 let from = column.min(extent.width as usize - 1);

@@ -1,10 +1,11 @@
 //! The mean of a plane over each cell's samples, weighted by their certainty: the confidence of a cell's flow from that
 //! of its pixels.
 //!
-//! Two equal channels, as [`cell_confidence`](super::cell_confidence) has: along every direction alike.
+//! It is written twice, in the place of the two channels of [`cell_confidence`](super::cell_confidence).
 
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::test_inputs::{Fill, cases as each_fill, planes};
+use super::cell_confidence::CHANNELS;
 pub use super::cell_evidence::Params;
 use crate::frame::Size;
 use crate::kernel::{Case, Tolerance, kernel};
@@ -25,8 +26,8 @@ fn reference(p: &Params, plane: &[f32], certainty: &[f32], mean: &mut [f32]) {
     let (width, height, stride) = dimensions(p.width, p.height);
     let (columns, _, out_stride) = dimensions(p.columns, p.rows);
     let (cell, step) = (p.cell as usize, p.step as usize);
-    bands(mean, &mut [], Split { dearer: 8, ..Split::rows_of(2 * out_stride) }, #[inline(always)] |band| {
-        for (i, out) in band.out.chunks_exact_mut(2 * out_stride).enumerate() {
+    bands(mean, &mut [], Split { dearer: 8, ..Split::rows_of(CHANNELS * out_stride) }, #[inline(always)] |band| {
+        for (i, out) in band.out.chunks_exact_mut(CHANNELS * out_stride).enumerate() {
             let row = band.y0 + i;
             for column in 0..columns {
                 let (mut count, mut sum) = (0.0, 0.0);
@@ -54,7 +55,7 @@ fn cases(size: Size) -> Vec<Case> {
         cell: side,
         step: 2,
     };
-    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[2 * extent.stride()], extent, |fill| {
+    each_fill(Fill::ALL, bytemuck::bytes_of(&params), &[CHANNELS * extent.stride()], extent, |fill| {
         vec![planes(size, 1, fill, [0.0, 1.0], 1), planes(size, 1, Fill::Textured, [0.0, 1.0], 2)]
     })
 }

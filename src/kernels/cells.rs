@@ -8,6 +8,7 @@
 //! every direction.
 
 use super::bearings::{Pinhole, rows};
+use super::cell_confidence::CHANNELS as CONFIDENCES;
 use super::parallel_rows::{Split, bands, dimensions, repeat_last};
 use super::spherical_flow::motion_case;
 use super::test_inputs::{Fill, cases as each_fill, planes};
@@ -89,7 +90,7 @@ fn reference(
                 let known = sums[0] > 1e-3;
                 let share = 1.0 / sums[0].max(1e-6);
                 for (channel, of) in [(0, 0), (5, 1)] {
-                    let confidence = confidence[(2 * row + of) * out_stride + column];
+                    let confidence = confidence[(CONFIDENCES * row + of) * out_stride + column];
                     rows[channel * out_stride + column] = if known { confidence } else { 0.0 };
                 }
                 for k in 1..5 {
@@ -128,7 +129,7 @@ fn cases(size: Size) -> Vec<Case> {
             planes(size, 2, fill, range, 3),
             motion_case(),
             certainty,
-            planes(extent, 2, Fill::Textured, [0.0, 1.0], 5),
+            planes(extent, CONFIDENCES, Fill::Textured, [0.0, 1.0], 5),
         ]
     })
 }

@@ -41,10 +41,10 @@ pub struct Cue<'a> {
     ///
     /// [`ExtraOutputs::looming`]: crate::sphere::ExtraOutputs::looming
     pub looming: Option<&'a [f32]>,
-    /// Confidence along the expected direction of the flow, place (x, y), rate (ẋ, ẏ) and confidence in every direction
-    /// of each cell, if [`ExtraOutputs::cells`](crate::sphere::ExtraOutputs::cells) asks for them: six channels, laid
+    /// Confidence, place (x, y), rate (ẋ, ẏ) and confidence in every direction of each cell, if [`ExtraOutputs::cells`](crate::sphere::ExtraOutputs::cells) asks for them: six channels, laid
     /// out as [`Cue::looming`]. Places are in the plane at unit distance from the ideal camera, rates in its units per
-    /// frame, confidences are 0 to 1.
+    /// frame, confidences are 0 to 1. The first confidence decides what counts; it differs from the last only with
+    /// [`Sphere::directional`](crate::sphere::Sphere::directional).
     pub cells: Option<&'a [f32]>,
     /// The flow on the view sphere at each pixel, if
     /// [`ExtraOutputs::spherical_flow`](crate::sphere::ExtraOutputs::spherical_flow) asks for it: three channels (x, y,

@@ -7,7 +7,8 @@ use super::{Cells, Grid, Heading, Motion, Sectors, Sphere, model};
 use crate::camera::{Camera, Lens};
 use crate::error::{Error, Result};
 use crate::frame::Size;
-use crate::kernels::{self, looming, sectors};
+use crate::kernels::cells::CHANNELS;
+use crate::kernels::{looming, sectors};
 
 /// Aggregates flow on the view sphere into sectors, on the CPU: true flow, or the flow of another estimator.
 ///
@@ -57,7 +58,7 @@ impl SectorAggregator {
             sectors_params: sectors_params(view, &cells),
             ranges,
             members,
-            of_cells: values(kernels::cells::CHANNELS),
+            of_cells: values(CHANNELS),
             looming: values(4),
             summed: vec![0.0; sectors::CHANNELS * stride * grid.rows],
             sectors: Sectors::unknown(grid),
@@ -94,8 +95,7 @@ impl SectorAggregator {
             let values =
                 [confidence, bearing.x / bearing.z, bearing.y / bearing.z, rate_x, rate_y, confidence];
             for (channel, value) in values.into_iter().enumerate() {
-                self.of_cells[(kernels::cells::CHANNELS * (i / columns) + channel) * stride + i % columns] =
-                    value as f32;
+                self.of_cells[(CHANNELS * (i / columns) + channel) * stride + i % columns] = value as f32;
             }
         }
         let motion = Motion { prev_from_cur: DMat3::IDENTITY, heading: *heading }.values();

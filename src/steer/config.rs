@@ -94,7 +94,7 @@ pub struct SteerParams {
     pub least_coverage: f64,
     /// The weight of a new frame against the old value in the map of danger, above 0 and at most 1.
     pub smoothing: f64,
-    /// How long obstacles that left the view are remembered, 0 to 10.
+    /// How long obstacles are remembered that left the view or whose sector became unknown, 0 to 10.
     pub memory_s: f64,
     /// The angular half width of an obstacle in the map.
     pub half_width_rad: f64,

@@ -7,7 +7,8 @@
 //! from north. Bank is positive with the right wing down, climb is positive upwards.
 //!
 //! A frame's sectors update a [`DangerMap`], levelled with the horizon and aligned with the direction of motion. Near
-//! sectors become obstacles: balls at the distance that follows from airspeed and time to contact.
+//! sectors become obstacles: balls at the distance that follows from airspeed and time to contact. Whole columns of the map
+//! are read at a time ([`Reading::Columns`]), as a thin trunk is not known in all of its sectors.
 
 mod aircraft;
 mod arc;

@@ -19,8 +19,9 @@ use crate::frame::Size;
 ///
 /// Frames of a synthetic scene are streamed; a frame's time includes its upload and the readback of the flow. Kernels
 /// are timed in a second run: on the GPU by its own clock, on the CPU around each step. "moved" counts the bytes that
-/// a step must at least read and write, "Mflop" the floating-point operations of its shader. "of copy" compares its throughput with that of a plain copy measured in the
-/// same run: how much faster the kernel could still become. Work that stays in a cache can exceed 100 %.
+/// a step must at least read and write, "Mflop" the floating-point operations of its shader. "of copy" compares its
+/// throughput with that of a plain copy measured in the same run: how much faster the kernel could still become. Work
+/// that stays in a cache can exceed 100 %.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -12,7 +12,7 @@ use crate::plan::{BufId, Bufs, Shape, Step};
 /// τ: the difference from the previous flow, in pixels of the finest computed level, at which its weight is half.
 const CARRY_SPREAD: f32 = 0.2;
 
-/// The frame before the pair, whose equations are added to the pair's.
+/// The third frame: the one before the pair. Its equations count beside the pair's own.
 pub(super) struct ThirdFrame {
     weight: f32,
     /// Its time in displacements from the first image of a pair.

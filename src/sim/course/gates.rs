@@ -1,4 +1,4 @@
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::field::{self, Field};
 use super::{Course, northward, wall_between};
@@ -68,8 +68,8 @@ impl Gates {
                 let half_height_m = 0.5 * (self.height_m - beam_m);
                 surfaces.push(Surface::rectangle(
                     at(offset_m).extend(-beam_m - half_height_m),
-                    glam::DVec3::Y * 0.5 * opening_m,
-                    glam::DVec3::NEG_Z * half_height_m,
+                    DVec3::Y * 0.5 * opening_m,
+                    DVec3::NEG_Z * half_height_m,
                 )?);
             }
             north_m += random.within(self.distance_m);
