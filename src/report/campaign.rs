@@ -31,8 +31,16 @@ pub struct CampaignRow {
     pub least_clearance_p5_m: Option<f64>,
     /// Path efficiency, progress per distance flown, 0 to 1: the mean over the flights that reached the goal.
     pub efficiency: Option<f64>,
-    /// Distance flown per crash, metres; `None` without a crash.
-    pub between_crashes_m: Option<f64>,
+    /// Distance flown per touch of a surface, metres; `None` without a touch.
+    pub between_touches_m: Option<f64>,
+    /// Mission progress, the share of the course that was flown, 0 to 1: the mean over the flights.
+    pub progress: Option<f64>,
+    /// Path length over that of the shortest way, minus 1: the mean over the flights that reached the goal.
+    pub optimality: Option<f64>,
+    /// Length of the shortest way over the time taken, m/s: the mean over the flights that reached the goal.
+    pub goal_speed_m_s: Option<f64>,
+    /// Integral of the jerk per distance flown, 1/s².
+    pub energy_hz2: Option<f64>,
 }
 
 /// A campaign as a self-contained HTML page: a table with a row per setting.
@@ -52,7 +60,11 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
         "clearance, m",
         "5th percentile, m",
         "efficiency, %",
-        "m per crash",
+        "m per touch",
+        "progress, %",
+        "optimality, %",
+        "goal speed, m/s",
+        "energy, 1/s²",
     ];
     let heads: String = labels.iter().map(head).collect();
     let figures: String =
@@ -66,7 +78,9 @@ pub fn campaign_page(title: &str, about: &str, labels: &[&str], rows: &[Campaign
     let body = format!(
         "{}<section>\n<h2>{}</h2>\n\
          <p>The bar is the share that reached the goal, the line over it the 95 % interval (Wilson). Clearance is the mean of \
-         each flight's least; efficiency is progress per metre flown, of the flights that reached the goal.</p>\n\
+         each flight's least; efficiency is progress per metre flown, of the flights that reached the goal. The last four are \
+         AvoidBench's: the share of the course that was flown; by how much the path is longer than the shortest way, and \
+         that way over the time, of the flights that reached the goal; and the integral of the jerk per metre.</p>\n\
          {}</section>\n",
         paragraph(about),
         counted(flights, "flight"),
@@ -95,7 +109,11 @@ fn cells(row: &CampaignRow, labels: usize) -> String {
         number(row.least_clearance_mean_m, 2),
         number(row.least_clearance_p5_m, 2),
         number(row.efficiency.map(|share| 100.0 * share), 1),
-        number(row.between_crashes_m, 0),
+        number(row.between_touches_m, 0),
+        number(row.progress.map(|share| 100.0 * share), 1),
+        number(row.optimality.map(|share| 100.0 * share), 1),
+        number(row.goal_speed_m_s, 2),
+        number(row.energy_hz2, 2),
     ];
     let figures: String = figures.iter().map(|figure| format!("<td>{figure}</td>")).collect();
     format!("<tr>{labels}{figures}</tr>\n")
@@ -135,7 +153,11 @@ mod tests {
             least_clearance_mean_m: Some(1.234),
             least_clearance_p5_m: Some(0.7),
             efficiency: Some(0.971),
-            between_crashes_m: Some(5900.0),
+            between_touches_m: Some(5900.0),
+            progress: Some(0.99),
+            optimality: Some(0.02),
+            goal_speed_m_s: Some(11.7),
+            energy_hz2: Some(3.1),
         };
         let none = CampaignRow {
             labels: Vec::new(),
@@ -143,7 +165,7 @@ mod tests {
             reached: 0,
             interval: [f64::NAN; 2],
             efficiency: Some(f64::NAN),
-            between_crashes_m: None,
+            between_touches_m: None,
             ..row.clone()
         };
         let html = campaign_page("A & B", "seeds 0..30", &["world", "policy"], &[row.clone(), row, none]);

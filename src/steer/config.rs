@@ -1,7 +1,7 @@
 //! Configuration of steering.
 
 use super::Aircraft;
-use crate::error::{Result, in_ranges};
+use crate::error::Result;
 
 /// How a command is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,7 +60,7 @@ pub struct SteerConfig {
 }
 
 /// The parameters of steering.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SteerParams {
     /// How a command is chosen.
@@ -182,43 +182,6 @@ impl SteerConfig {
 }
 
 impl SteerParams {
-    /// Checks every parameter's range.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`](crate::Error::Parameter), naming the first one that is out of range.
-    pub fn validate(&self) -> Result<()> {
-        let quarter = std::f64::consts::FRAC_PI_4;
-        let Weights { danger, goal, change, bank, climb } = self.weights;
-        let OnInvalid { hold_s, climb_rad } = self.on_invalid;
-        in_ranges(&[
-            ("post_m", self.post_m, 0.0, 1e3),
-            ("distance_scale", self.distance_scale, 0.01, 2.0),
-            ("max_bank_rad", self.max_bank_rad, 1e-3, 1.5),
-            ("max_climb_rad", self.max_climb_rad, 0.0, quarter),
-            ("horizon_s", self.horizon_s, 0.1, 10.0),
-            ("radius_m", self.radius_m, 1e-3, 1e3),
-            ("softness_m", self.softness_m, 1e-3, 1e3),
-            ("discount_s", self.discount_s, 1e-3, 1e3),
-            ("weights.danger", danger, 0.0, 1e6),
-            ("weights.goal", goal, 0.0, 1e6),
-            ("weights.change", change, 0.0, 1e6),
-            ("weights.bank", bank, 0.0, 1e6),
-            ("weights.climb", climb, 0.0, 1e6),
-            ("least_rate_hz", self.least_rate_hz, 1e-3, 1e3),
-            ("least_coverage", self.least_coverage, 0.0, 1.0),
-            ("smoothing", self.smoothing, 1e-3, 1.0),
-            ("memory_s", self.memory_s, 0.0, 10.0),
-            ("half_width_rad", self.half_width_rad, 0.0, quarter),
-            ("map_half_rad", self.map_half_rad[0], 0.01, 3.1),
-            ("map_half_rad", self.map_half_rad[1], 0.01, 1.5),
-            ("map_pitch_rad", self.map_pitch_rad[0], 0.01, 2.0 * self.map_half_rad[0]),
-            ("map_pitch_rad", self.map_pitch_rad[1], 0.01, 2.0 * self.map_half_rad[1]),
-            ("climb_per_m", self.climb_per_m, 0.0, 10.0),
-            ("on_invalid.hold_s", hold_s, 0.0, 60.0),
-            ("on_invalid.climb_rad", climb_rad, -quarter, quarter),
-        ])
-    }
-
     /// The command clamped to the limits.
     pub(super) fn limited(&self, command: super::Command) -> super::Command {
         let clamped = |angle: f64, most: f64| if angle.is_finite() { angle.clamp(-most, most) } else { 0.0 };

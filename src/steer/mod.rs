@@ -19,6 +19,7 @@ mod map;
 mod names;
 mod observation;
 mod obstacles;
+mod parameters;
 mod simple;
 mod steering;
 

@@ -121,6 +121,43 @@ fn the_table_counts_what_the_flights_say() {
 }
 
 #[test]
+fn settings_are_compared_on_the_same_seeds() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    well(campaign(folder, "a", &["--policies", "arc,none", "--seeds", "0..4"]));
+    well(campaign(folder, "b", &["--seeds", "1..5", "--steer", "radius_m=1.5,memory_s=2"]));
+    let compare = |args: &[&str]| program(folder, &[&["campaign", "compare"], args].concat());
+    let rows = |args: &[&str]| {
+        let rows = serde_json::from_str::<Value>(&well(compare(args)).stdout).unwrap();
+        rows.as_array().unwrap().clone()
+    };
+    let of = rows(&["a", "--first", "policy=none", "--second", "policy=arc", "--json"]);
+    assert_eq!(of.len(), 1);
+    let table: Value = serde_json::from_str(&read(folder, "a/table.json")).unwrap();
+    let reached = |row: usize| table["rows"][row]["reached"].as_u64().unwrap();
+    assert_eq!(
+        (&of[0]["pairs"], &of[0]["reached"]),
+        (&Value::from(4), &Value::from([reached(0), reached(1)]))
+    );
+    let of = rows(&["a", "b", "--json"]);
+    assert_eq!((of.len(), &of[0]["pairs"]), (1, &Value::from(3)));
+    let text = well(compare(&["a", "b"])).stdout;
+    assert!(text.starts_with("setting") && text.contains("only second"), "{text}");
+    for (args, words) in [
+        (vec!["a"], "SECOND is missing"),
+        (vec!["a", "none"], "none/results.jsonl"),
+        (
+            vec!["a", "b", "--first", "policy=arc", "--second", "policy=balance"],
+            "results is 8 and 4, expected at least one",
+        ),
+        (vec!["a", "--first", "colour=red"], "NAME=VALUE with one of world, sensor"),
+    ] {
+        let ended = compare(&args);
+        assert!(ended.code == Some(2) && ended.stderr.contains(words), "{args:?}: {}", ended.stderr);
+    }
+}
+
+#[test]
 fn a_campaign_goes_on_where_it_was_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

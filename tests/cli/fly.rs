@@ -380,6 +380,10 @@ fn what_cannot_be_flown_is_an_error_of_one_line_and_leaves_nothing() {
     fly(&["--measure", "--sensor", "flow"], &["measure", "the sensor flow", "images"]);
     fly(&["--picture-at", "1"], &["--measure"]);
     fly(&["--measure", "--picture-at", "NaN"], &["--picture-at", "NaN"]);
+    fly(&["--fov-deg", "150"], &["--fov-deg is 150, expected 20 to 120"]);
+    fly(&["--steer", "radius_m"], &["--steer is \"radius_m\", expected NAME=VALUE"]);
+    fly(&["--steer", "colour=3"], &["steering parameter is \"colour\", expected reading, post_m, "]);
+    fly(&["--steer", "memory_s=-1"], &["memory_s is -1, expected 0 to 10"]);
     fly(&["--adapter", "x"], &["--adapter", "--backend cpu"]);
     fly(&["--adapter", "x", "--sensor", "depth"], &["--adapter", "--backend cpu"]);
     refused(&["fly", "--world", "forest:radius=1:radius=2"], &["radius=2", "each parameter once"]);

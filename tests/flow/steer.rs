@@ -154,7 +154,7 @@ fn what_is_merely_unknown_is_remembered() {
     let mut seen = view(&[(DVec3::new(3.0, 0.0, 10.0), 1.5)]);
     let params = SteerParams { smoothing: 1.0, ..SteerParams::default() };
     for (coverage, remembered) in [(0.0, true), (1.0, false)] {
-        let mut steering = Steering::new(params.clone().into()).unwrap();
+        let mut steering = Steering::new(params.into()).unwrap();
         steering.update(&observation(0.0, DMat3::IDENTITY, Some(&seen)));
         assert!(!steering.obstacles().is_empty());
         let mut nothing = view(&[]);
@@ -165,7 +165,7 @@ fn what_is_merely_unknown_is_remembered() {
     // Half an interval after the moment of its rate, the obstacle is nearer by what was flown since.
     seen.interval_s = 0.5;
     let nearest = |seen: &Sectors| {
-        let mut steering = Steering::new(params.clone().into()).unwrap();
+        let mut steering = Steering::new(params.into()).unwrap();
         steering.update(&observation(0.0, DMat3::IDENTITY, Some(seen)));
         steering.obstacles().iter().map(|o| o.place_ned_m.length()).fold(f64::INFINITY, f64::min)
     };
@@ -177,7 +177,7 @@ fn what_is_merely_unknown_is_remembered() {
 #[test]
 fn without_a_cue_it_holds_and_then_levels_and_climbs() {
     let config = SteerParams::default();
-    let mut steering = Steering::new(config.clone().into()).unwrap();
+    let mut steering = Steering::new(config.into()).unwrap();
     let none = steering.update(&observation(0.0, DMat3::IDENTITY, None));
     assert_eq!(none.source, Source::Recovery);
     let sectors = view(&ahead(1.0));
@@ -220,7 +220,7 @@ fn what_is_not_a_number_is_no_cue_and_no_command() {
 fn limits_hold_and_parameters_are_checked() {
     let config = SteerParams { max_bank_rad: 0.3, ..SteerParams::default() };
     for policy in [Policy::None, Policy::Balance, Policy::Potential, Policy::Heading, Policy::Arc] {
-        let mut steering = Steering::new(SteerParams { policy, ..config.clone() }.into()).unwrap();
+        let mut steering = Steering::new(SteerParams { policy, ..config }.into()).unwrap();
         let sectors = view(&[(DVec3::new(1.0, 0.0, 4.0), 2.5)]);
         let command = steering.update(&observation(0.0, DMat3::IDENTITY, Some(&sectors))).command;
         assert!(

@@ -1,8 +1,9 @@
 //! The closed loop: it flies, it is deterministic bit for bit, and it reports a fault within a frame.
 
+use glam::{DMat3, DVec3};
 use viewsphere::Backend;
 use viewsphere::sim::flight::{Body, Fault, Flight, FlightConfig, Outcome, Record, Sensor, Summary};
-use viewsphere::sim::{Course, CourseKind};
+use viewsphere::sim::{Course, CourseKind, Surface};
 use viewsphere::steer::{Danger, Policy, Source};
 
 use crate::need;
@@ -50,6 +51,37 @@ fn what_sees_flies_past_the_wall_and_what_does_not_hits_it() {
     let summary = fly(&course("wall:offset=0", 3), &blind);
     assert_eq!(summary.outcome, Outcome::Crashed, "{summary:?}");
     assert!(summary.progress_m > 50.0 && summary.least_clearance_m <= 0.6, "{summary:?}");
+}
+
+/// Two walls in a row: a flight that is flown on touches both, and what it counts has no part in where it flies.
+#[test]
+fn what_is_flown_on_counts_every_touch() {
+    let wall = |north_m: f64| {
+        Surface::cuboid(DVec3::new(north_m, 0.0, -10.0), DMat3::IDENTITY, DVec3::new(0.5, 40.0, 20.0))
+            .unwrap()
+    };
+    let mut twice = course("wall:distance=40:width=40:incidence=0:offset=0:past=40", 3);
+    twice.world.surfaces.push(wall(60.0));
+    let mut ends = config(Sensor::Depth);
+    ends.steer.policy = Policy::None;
+    let on = FlightConfig { fly_on: true, ..ends.clone() };
+    let [ended, flown] = [&ends, &on].map(|config| fly(&twice, config));
+    assert_eq!((ended.outcome, ended.touches), (Outcome::Crashed, 1));
+    assert_eq!((flown.outcome, flown.touches), (Outcome::Crashed, 2), "{flown:?}");
+    assert!(ended.progress_m < 40.0 && flown.progress_m >= 80.0, "{} {}", ended.progress_m, flown.progress_m);
+    assert_eq!((flown.optimality(), flown.goal_speed_m_s(), flown.progress()), (None, None, 1.0));
+    let [before, same] = [&ends, &on].map(|config| records(CPU, &twice, config, 60));
+    assert_eq!(before, same);
+    // Without a touch nothing differs.
+    let free = course("wall", 3);
+    let [ended, flown] =
+        [false, true].map(|fly_on| fly(&free, &FlightConfig { fly_on, ..config(Sensor::Depth) }));
+    assert_eq!(ended, flown);
+    let [optimality, speed_m_s] = [ended.optimality().unwrap(), ended.goal_speed_m_s().unwrap()];
+    assert!(
+        (-0.01..0.2).contains(&optimality) && (9.0..12.5).contains(&speed_m_s),
+        "{optimality} {speed_m_s}"
+    );
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `viewsphere campaign`: many simulated flights, and their statistics.
 
+mod compare;
 mod merge;
 mod report;
 
@@ -10,6 +11,7 @@ use std::str::FromStr;
 
 use clap::{Args, Subcommand};
 
+use self::compare::Compare;
 use self::merge::Merge;
 use super::args::{named_by_flags, whole_within};
 use super::backend::BackendArgs;
@@ -36,8 +38,10 @@ const RESULTS: &str = "results.jsonl";
 /// end table.csv, table.json and report.html (one self-contained page), with a row per combination: flights; how many
 /// reached the goal, crashed, left the altitude band or timed out; the success rate with its 95 % confidence interval
 /// (Wilson 1927); the least clearance of a flight, mean and 5th percentile; the path efficiency of the flights that
-/// reached the goal; the distance flown per crash; the roll rate (root mean square); the share of time without a cue;
-/// the offset from the centre line where the world has one.
+/// reached the goal; touches, with --fly-on all of a flight, and the distance flown per touch; AvoidBench's progress,
+/// optimality (path length over that of the shortest way, minus 1), goal speed and energy; courses without a way at the
+/// altitude of the start; the roll rate (root mean square); the share of time without a cue; the offset from the centre
+/// line where the world has one.
 ///
 /// A campaign can be stopped at any time. Called again, it resumes, retries the flights that failed with an error,
 /// and flies what was added to the lists. Results of another version, configuration or adapter are refused; only
@@ -53,6 +57,9 @@ Examples:
   viewsphere campaign --worlds city --faults none,black:2..3,dropped=0.2+gyro-bias=5:4
   viewsphere campaign --worlds forest --seeds 0..1000 --shard $SLURM_ARRAY_TASK_ID/10 -o part_$SLURM_ARRAY_TASK_ID
   viewsphere campaign merge part_* -o campaign/
+  viewsphere campaign --worlds forest:density=1/40 --seeds 0..30 --fly-on -o touches/
+  viewsphere campaign --worlds forest --seeds 0..30 --steer memory_s=2 -o longer/
+  viewsphere campaign compare campaign/ longer/
 
 Exit codes: 0 done, however the flights ended; 2 an error, also that of a flight; 130 stopped by a signal."
 )]
@@ -124,6 +131,7 @@ pub(super) struct Campaign {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    Compare(Compare),
     Merge(Merge),
 }
 
@@ -153,6 +161,7 @@ impl FromStr for Seeds {
 impl Campaign {
     pub(super) fn run(&self) -> Result<Outcome> {
         match &self.command {
+            Some(Command::Compare(compare)) => compare.run(),
             Some(Command::Merge(merge)) => merge.run(),
             None => self.fly(),
         }

@@ -44,7 +44,11 @@ fn html(table: &Table) -> String {
         least_clearance_mean_m: row.least_clearance_mean_m,
         least_clearance_p5_m: row.least_clearance_p5_m,
         efficiency: row.efficiency,
-        between_crashes_m: row.between_crashes_m,
+        between_touches_m: row.between_touches_m,
+        progress: row.progress,
+        optimality: row.optimality,
+        goal_speed_m_s: row.goal_speed_m_s,
+        energy_hz2: row.energy_hz2,
     };
     let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
     campaign_page("Campaign", &same, &names, &table.rows.iter().map(row).collect::<Vec<_>>())
@@ -92,7 +96,7 @@ const FIGURES: [Column; 13] = [
     ("clear m", |row| some(row.least_clearance_mean_m, 2)),
     ("5 %", |row| some(row.least_clearance_p5_m, 2)),
     ("efficiency", |row| some(row.efficiency, 3)),
-    ("m/crash", |row| some(row.between_crashes_m, 0)),
+    ("m/touch", |row| some(row.between_touches_m, 0)),
     ("roll °/s", |row| some(row.roll_rate_rad_s.map(f64::to_degrees), 1)),
     ("no cue", |row| some(row.invalid, 3)),
 ];
@@ -128,7 +132,13 @@ mod tests {
             least_clearance_mean_m: Some(1.0),
             least_clearance_p5_m: Some(0.5),
             efficiency: None,
-            between_crashes_m: None,
+            touches: 1,
+            between_touches_m: None,
+            progress: Some(0.9),
+            optimality: None,
+            goal_speed_m_s: None,
+            energy_hz2: Some(2.0),
+            without_way: 0,
             path_m: 100.0,
             roll_rate_rad_s: Some(0.1),
             invalid: Some(0.01),

@@ -208,15 +208,16 @@ impl Fly {
     }
 
     fn config(&self) -> Result<FlightConfig> {
+        let base = self.setup.config()?;
         let mut config = FlightConfig {
             speed_m_s: self.speed,
             sensor: if self.truth_flow { Sensor::Flow } else { self.sensor },
-            camera: flight::camera(self.size),
-            steer: SteerParams { policy: self.policy, danger: self.danger, ..SteerParams::default() },
+            camera: flight::resized(&base.camera, self.size),
+            steer: SteerParams { policy: self.policy, danger: self.danger, ..base.steer },
             latency_frames: self.latency_frames,
             faults: self.faults.clone(),
             measure: self.measure.measure,
-            ..self.setup.config()?
+            ..base
         };
         // The flow is read back for the video only.
         config.pipeline.read_flow = !self.no_video;

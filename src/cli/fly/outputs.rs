@@ -81,8 +81,13 @@ impl Flown<'_> {
         let reasons = recorder.records.iter().filter_map(|record| record.invalid.as_deref());
         let video = fs::metadata(folder.join(VIDEO))
             .map_or(String::new(), |file| format!(", and a video of {:.0} MB", 1e-6 * file.len() as f64));
+        let touches = match (self.flight.config().fly_on, summary.touches) {
+            (false, _) => String::new(),
+            (true, 1) => ", 1 touch".to_owned(),
+            (true, count) => format!(", {count} touches"),
+        };
         format!(
-            "outcome    {} after {:.1} s and {:.0} m\n\
+            "outcome    {} after {:.1} s and {:.0} m{touches}\n\
              clearance  least {:.2} m, 5th percentile {:.2} m\n\
              path       {:.1} m flown, {:.1} % of it towards the goal\n\
              control    roll rate {:.1} °/s (root mean square)\n\

@@ -7,8 +7,9 @@ use glam::DVec3;
 
 use crate::cli::flow_args::FlowArgs;
 use crate::error::{Error, Result};
-use crate::sim::flight::{Body, FlightConfig};
+use crate::sim::flight::{Body, FlightConfig, camera_of_fov};
 use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors};
+use crate::steer::SteerParams;
 
 /// The options for the vehicle and the air.
 #[derive(Args, Clone, Debug)]
@@ -27,8 +28,37 @@ pub(in crate::cli) struct SetupArgs {
     /// ground: in wind, which makes the flight drift, steering is worse with them
     #[arg(long)]
     vanes: bool,
+    /// Fly on after a surface came nearer than the vehicle's radius, through it if need be, and count such touches. The
+    /// outcome is crashed all the same
+    #[arg(long)]
+    fly_on: bool,
+    /// Horizontal field of view of the camera between the middles of its sides, without its distortion, in degrees, 20 to
+    /// 120 [default: 86.7]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, help_heading = "Camera and steering")]
+    fov_deg: Option<f64>,
+    /// Parameters of the steering, for example radius_m=1.5,memory_s=2. Angles are in radians, times in seconds
+    #[arg(
+        long,
+        value_name = "NAME=VALUE,...",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Camera and steering",
+        long_help = steer_help()
+    )]
+    steer: Vec<String>,
     #[command(flatten)]
     flow: FlowArgs,
+}
+
+/// The help of `--steer`: every parameter with its default.
+fn steer_help() -> String {
+    let params = SteerParams::default();
+    let all = params.named().into_iter().map(|(name, value)| format!("{name}={value}"));
+    format!(
+        "Parameters of the steering, for example radius_m=1.5,memory_s=2. Angles are in radians, times in seconds. All, with \
+         their defaults: {}",
+        all.collect::<Vec<_>>().join(", ")
+    )
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -86,8 +116,22 @@ impl SetupArgs {
                 GustsArg::Moderate => Some(Gusts::MODERATE),
             },
             vanes: self.vanes.then(VaneErrors::default),
+            fly_on: self.fly_on,
             ..FlightConfig::default()
         };
+        if let Some(fov_deg) = self.fov_deg {
+            if !(20.0..=120.0).contains(&fov_deg) {
+                return Err(Error::parameter("--fov-deg", fov_deg, "20 to 120"));
+            }
+            config.camera = camera_of_fov(config.camera.size, fov_deg.to_radians());
+        }
+        for part in &self.steer {
+            let (name, value) = part
+                .split_once('=')
+                .ok_or_else(|| Error::parameter("--steer", format_args!("{part:?}"), "NAME=VALUE"))?;
+            config.steer.set(name.trim(), value)?;
+        }
+        config.steer.validate()?;
         config.pipeline.algorithm = self.flow.algorithm_or(&config.pipeline.algorithm)?;
         Ok(config)
     }
@@ -97,7 +141,10 @@ impl SetupArgs {
         let (body, gusts, vanes) = self.names();
         let [north, east, down] = self.wind.0.to_array();
         let vanes = if vanes { "vanes" } else { "no vanes" };
-        format!("body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}")
+        let fly_on = if self.fly_on { ", flown on" } else { "" };
+        let fov = self.fov_deg.map(|fov_deg| format!(", fov {fov_deg}°")).unwrap_or_default();
+        let steer = if self.steer.is_empty() { String::new() } else { format!(", {}", self.steer.join(",")) };
+        format!("body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}{fly_on}{fov}{steer}")
     }
 
     /// The values of `--body`, `--gusts` and `--vanes`.

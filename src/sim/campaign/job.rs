@@ -6,7 +6,7 @@ use crate::backend::Backend;
 use crate::error::Result;
 use crate::frame::Size;
 use crate::sim::CourseKind;
-use crate::sim::flight::{Flight, FlightConfig, Sensor, Summary, camera};
+use crate::sim::flight::{Flight, FlightConfig, Sensor, Summary, resized};
 use crate::steer::{Danger, Policy, SteerParams};
 
 /// The setting of a flight: everything that distinguishes it but the seed. A row of the campaign's table.
@@ -41,7 +41,28 @@ pub struct Job {
     pub seed: u64,
 }
 
+/// The names of the parts of a [`Setting`], in the order of its text.
+pub const PART_NAMES: [&str; 8] =
+    ["world", "sensor", "policy", "danger", "speed_m_s", "size", "latency_frames", "faults"];
+
 impl Setting {
+    /// The parts as text, each with its name.
+    pub fn parts(&self) -> [(&'static str, String); 8] {
+        let Self { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = self;
+        let values = [
+            world.to_string(),
+            sensor.to_string(),
+            policy.to_string(),
+            danger.to_string(),
+            speed_m_s.to_string(),
+            self.size_text(),
+            latency_frames.to_string(),
+            faults.to_string(),
+        ];
+        let mut names = PART_NAMES.into_iter();
+        values.map(|value| (names.next().unwrap_or_default(), value))
+    }
+
     /// The order of a table's rows: by world, then from exact to camera-based sensing, then from the simplest policy
     /// on.
     pub fn order(&self, other: &Self) -> Ordering {
@@ -61,13 +82,14 @@ impl Setting {
         format!("{}x{}", self.size.width, self.size.height)
     }
 
-    /// The flight's configuration: this setting, and `base` for everything else.
+    /// The flight's configuration: this setting, and `base` for everything else. The camera is that of `base` with another
+    /// number of pixels.
     pub fn config(&self, base: &FlightConfig) -> FlightConfig {
         FlightConfig {
             sensor: self.sensor,
-            steer: SteerParams { policy: self.policy, danger: self.danger, ..base.steer.clone() },
+            steer: SteerParams { policy: self.policy, danger: self.danger, ..base.steer },
             speed_m_s: self.speed_m_s,
-            camera: camera(self.size),
+            camera: resized(&base.camera, self.size),
             latency_frames: self.latency_frames,
             faults: self.faults.0.clone(),
             ..base.clone()
@@ -98,8 +120,6 @@ impl Job {
 
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = self;
-        let size = self.size_text();
-        write!(f, "{world}/{sensor}/{policy}/{danger}/{speed_m_s}/{size}/{latency_frames}/{faults}")
+        f.write_str(&self.parts().map(|(_, value)| value).join("/"))
     }
 }

@@ -41,7 +41,13 @@ struct FlownFigures {
     #[serde(deserialize_with = "number")]
     progress_m: f64,
     #[serde(deserialize_with = "number")]
+    length_m: f64,
+    #[serde(deserialize_with = "number")]
     path_m: f64,
+    shortest_m: Option<f64>,
+    touches: u32,
+    #[serde(deserialize_with = "number")]
+    jerk_m_s2: f64,
     #[serde(deserialize_with = "number")]
     least_clearance_m: f64,
     #[serde(deserialize_with = "number")]
@@ -140,7 +146,11 @@ impl From<&Summary> for FlownFigures {
             outcome: summary.outcome.to_string(),
             time_s: summary.time_s,
             progress_m: summary.progress_m,
+            length_m: summary.length_m,
             path_m: summary.path_m,
+            shortest_m: summary.shortest_m,
+            touches: summary.touches,
+            jerk_m_s2: summary.jerk_m_s2,
             least_clearance_m: summary.least_clearance_m,
             low_clearance_m: summary.low_clearance_m,
             roll_rate_rad_s: summary.roll_rate_rad_s,
@@ -156,7 +166,11 @@ impl FlownFigures {
             outcome: self.outcome.parse()?,
             time_s: self.time_s,
             progress_m: self.progress_m,
+            length_m: self.length_m,
             path_m: self.path_m,
+            shortest_m: self.shortest_m,
+            touches: self.touches,
+            jerk_m_s2: self.jerk_m_s2,
             least_clearance_m: self.least_clearance_m,
             low_clearance_m: self.low_clearance_m,
             roll_rate_rad_s: self.roll_rate_rad_s,

@@ -120,7 +120,10 @@ mod tests {
         let error = one.merge("b", other).unwrap_err().to_string();
         let key = reached("wall", 1).job.key();
         let figures = |least, low, outcome| {
-            format!("least_clearance_m {least}, low_clearance_m {low}, outcome \"{outcome}\"")
+            let touches = u32::from(outcome == "crashed");
+            format!(
+                "least_clearance_m {least}, low_clearance_m {low}, outcome \"{outcome}\", touches {touches}"
+            )
         };
         let expected = format!(
             "b: result is that of {key} with {}, expected the one already present, with {}",

@@ -59,8 +59,22 @@ pub struct Row {
     pub least_clearance_p5_m: Option<f64>,
     /// Path efficiency, progress per distance flown, 0 to 1: the mean over the flights that reached the goal.
     pub efficiency: Option<f64>,
-    /// Distance flown per crash, metres; `None` without a crash.
-    pub between_crashes_m: Option<f64>,
+    /// How often a surface came nearer than the vehicle's radius, in all flights together: the number of crashes, unless
+    /// the flights were [flown on](crate::sim::flight::FlightConfig::fly_on).
+    pub touches: usize,
+    /// Distance flown per touch, metres; `None` without a touch.
+    pub between_touches_m: Option<f64>,
+    /// Mission progress, the share of the course that was flown, 0 to 1: the mean over the flights.
+    pub progress: Option<f64>,
+    /// [`Summary::optimality`]: the mean over the flights that have one.
+    pub optimality: Option<f64>,
+    /// [`Summary::goal_speed_m_s`]: the mean over the flights that have one.
+    pub goal_speed_m_s: Option<f64>,
+    /// [`Summary::energy_hz2`]: that of all flights together.
+    pub energy_hz2: Option<f64>,
+    /// Flights through a course without a way at the altitude of its start, by
+    /// [`Course::shortest_way_m`](crate::sim::Course::shortest_way_m).
+    pub without_way: usize,
     /// Total distance flown, metres.
     pub path_m: f64,
     /// Root mean square of the roll rate over the time of all flights, rad/s.
@@ -111,7 +125,13 @@ impl Table {
                 some(row.least_clearance_mean_m),
                 some(row.least_clearance_p5_m),
                 some(row.efficiency),
-                some(row.between_crashes_m),
+                row.touches.to_string(),
+                some(row.between_touches_m),
+                some(row.progress),
+                some(row.optimality),
+                some(row.goal_speed_m_s),
+                some(row.energy_hz2),
+                row.without_way.to_string(),
                 row.path_m.to_string(),
                 some(row.roll_rate_rad_s),
                 some(row.invalid),
@@ -126,7 +146,7 @@ impl Table {
 }
 
 /// The columns of [`Table::csv`]: the fields of a [`Row`].
-const COLUMNS: [&str; 26] = [
+const COLUMNS: [&str; 32] = [
     "world",
     "sensor",
     "policy",
@@ -147,7 +167,13 @@ const COLUMNS: [&str; 26] = [
     "least_clearance_mean_m",
     "least_clearance_p5_m",
     "efficiency",
-    "between_crashes_m",
+    "touches",
+    "between_touches_m",
+    "progress",
+    "optimality",
+    "goal_speed_m_s",
+    "energy_hz2",
+    "without_way",
     "path_m",
     "roll_rate_rad_s",
     "invalid",
@@ -180,6 +206,11 @@ impl Row {
         let offset = |which: usize| {
             mean(&flown.iter().filter_map(|summary| Some(summary.offset_m?[which])).collect::<Vec<_>>())
         };
+        let touches = flown.iter().map(|summary| summary.touches as usize).sum::<usize>();
+        let some = |value: fn(&Summary) -> Option<f64>| {
+            flown.iter().filter_map(|summary| value(summary)).collect::<Vec<_>>()
+        };
+        let progress = all(Summary::progress);
         let first = &results[0].job.setting;
         let Setting { world, sensor, policy, danger, speed_m_s, latency_frames, faults, .. } = first;
         Self {
@@ -203,7 +234,13 @@ impl Row {
             least_clearance_mean_m: mean(&clearances_m),
             least_clearance_p5_m: nearest(&sorted(clearances_m.iter().copied()), 0.05),
             efficiency: mean(&arrived.map(|summary| summary.efficiency()).collect::<Vec<_>>()),
-            between_crashes_m: (crashed > 0).then(|| path_m / crashed as f64),
+            touches,
+            between_touches_m: (touches > 0).then(|| path_m / touches as f64),
+            progress: mean(&progress),
+            optimality: mean(&some(Summary::optimality)),
+            goal_speed_m_s: mean(&some(Summary::goal_speed_m_s)),
+            energy_hz2: (path_m > 0.0).then(|| all(|summary| summary.jerk_m_s2).iter().sum::<f64>() / path_m),
+            without_way: flown.iter().filter(|summary| summary.shortest_m.is_none()).count(),
             path_m,
             roll_rate_rad_s: over_time(|summary| summary.roll_rate_rad_s.powi(2)).map(f64::sqrt),
             invalid: over_time(|summary| summary.invalid),
@@ -238,11 +275,14 @@ mod tests {
         assert_eq!(wall.least_clearance_p5_m, Some(0.5));
         // Each flight makes 100 m of progress on a path of 125 m, in 10 s, and rolls by 0.3 rad/s.
         assert_eq!(wall.efficiency, Some(0.8));
-        assert_eq!((wall.path_m, wall.between_crashes_m), (250.0, Some(250.0)));
+        assert_eq!((wall.path_m, wall.touches, wall.between_touches_m), (250.0, 1, Some(250.0)));
+        // Of 110 m, on a path of 125 m where 120 m would do; the jerk adds up to 250 m/s².
+        assert_eq!((wall.progress, wall.optimality), (Some(100.0 / 110.0), Some(125.0 / 120.0 - 1.0)));
+        assert_eq!((wall.goal_speed_m_s, wall.energy_hz2, wall.without_way), (Some(12.0), Some(2.0), 0));
         assert!((wall.roll_rate_rad_s.unwrap() - 0.3).abs() < 1e-12);
         assert!((wall.invalid.unwrap() - 0.1).abs() < 1e-12);
         let forest = &table.rows[0];
-        assert_eq!((forest.timed_out, forest.efficiency, forest.between_crashes_m), (1, None, None));
+        assert_eq!((forest.timed_out, forest.efficiency, forest.between_touches_m), (1, None, None));
     }
 
     #[test]

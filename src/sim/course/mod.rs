@@ -27,6 +27,7 @@ mod gates;
 mod kind;
 mod poisson_forest;
 mod scatter;
+mod shortest_way;
 mod wall;
 mod wires;
 

@@ -57,6 +57,9 @@ pub struct FlightConfig {
     pub faults: Vec<Fault>,
     /// Whether each frame's flow is compared with the true one. Only with [`Sensor::Images`].
     pub measure: bool,
+    /// Whether a flight goes on after a surface came nearer than the radius, through it if need be, so that all such
+    /// touches of a way are counted. It ends as [`Outcome::Crashed`](super::Outcome::Crashed) all the same.
+    pub fly_on: bool,
     /// A flight is given up after this many times the duration of the straight way, at least 1.
     pub patience: f64,
 }
@@ -109,17 +112,41 @@ impl Default for FlightConfig {
             flow_noise: FlowNoise::default(),
             faults: Vec::new(),
             measure: false,
+            fly_on: false,
             patience: 2.0,
         }
     }
 }
 
-/// A wide camera of this size with the usual barrel distortion: 96° across between the middles of the sides without it.
+/// A wide camera of this size with the usual barrel distortion: 96° across between the middles of the sides, 87° without
+/// the distortion.
 pub fn camera(size: Size) -> Camera {
+    barrel_camera(size, 0.53 * f64::from(size.width))
+}
+
+/// That camera with another horizontal field of view: between the middles of the sides, without the distortion, radians.
+pub fn camera_of_fov(size: Size, fov_rad: f64) -> Camera {
+    barrel_camera(size, 0.5 * f64::from(size.width) / (0.5 * fov_rad).tan())
+}
+
+fn barrel_camera(size: Size, f: f64) -> Camera {
     let (width, height) = (f64::from(size.width), f64::from(size.height));
-    let f = 0.53 * width;
     let lens = Lens { coefficients: [-0.28, 0.075, 3e-4, -2e-4, 0.0, 0.0, 0.0, 0.0] };
     Camera { size, f_u: f, f_v: f, u_0: 0.5 * (width - 1.0), v_0: 0.5 * (height - 1.0), lens }
+}
+
+/// The same camera with other pixels: its images resized to the width, and cut or widened to the height.
+pub(crate) fn resized(camera: &Camera, size: Size) -> Camera {
+    let scale = f64::from(size.width) / f64::from(camera.size.width);
+    let rows = 0.5 * (f64::from(size.height) - scale * f64::from(camera.size.height));
+    Camera {
+        size,
+        f_u: scale * camera.f_u,
+        f_v: scale * camera.f_v,
+        u_0: scale * (camera.u_0 + 0.5) - 0.5,
+        v_0: scale * (camera.v_0 + 0.5) - 0.5 + rows,
+        lens: camera.lens,
+    }
 }
 
 impl FlightConfig {

@@ -38,7 +38,6 @@ pub struct Flight {
     frame: u64,
     /// Commands that are decided and do not act yet, the oldest first.
     waiting: VecDeque<Command>,
-    least_clearance_m: f64,
     tally: Tally,
     cost: Cost,
     states: Vec<VehicleState>,
@@ -76,10 +75,8 @@ impl Flight {
             speed_m_s: config.speed_m_s,
         };
         let wind = Wind::new(config.wind_ned_m_s, config.gusts, random.fork(1).next_u64())?;
-        let steer = SteerConfig {
-            params: config.steer.clone(),
-            aircraft: config.body.aircraft(config.latency_frames),
-        };
+        let steer =
+            SteerConfig { params: config.steer, aircraft: config.body.aircraft(config.latency_frames) };
         Ok(Self {
             course: course.clone(),
             vehicle: config.body.vehicle(&start, wind)?,
@@ -93,7 +90,6 @@ impl Flight {
             },
             frame: 0,
             waiting: std::iter::repeat_n(Command::default(), config.latency_frames as usize).collect(),
-            least_clearance_m: f64::INFINITY,
             tally: Tally::default(),
             cost: Cost::default(),
             states: Vec::new(),
@@ -188,12 +184,14 @@ impl Flight {
         cost.vehicle = begun.elapsed();
         self.cost = cost;
         self.frame += 1;
-        Ok(outcome.map(|outcome| self.tally.summary(outcome, &record, self.least_clearance_m)))
+        Ok(outcome.map(|outcome| {
+            let outcome = if self.tally.has_touched() { Outcome::Crashed } else { outcome };
+            self.tally.summary(outcome, &record, &self.course, self.config.radius_m)
+        }))
     }
 
     /// Moves the vehicle to the next frame.
     fn advance(&mut self, acting: &Command, record: &Record) -> Option<Outcome> {
-        self.least_clearance_m = self.least_clearance_m.min(record.clearance_m);
         if record.progress_m >= self.course.length_m {
             return Some(Outcome::Reached);
         }
@@ -204,8 +202,8 @@ impl Flight {
             self.vehicle.advance(acting, STEP_S);
             let state = self.state(step);
             let clearance_m = self.course.world.clearance_m(state.position_ned_m);
-            self.least_clearance_m = self.least_clearance_m.min(clearance_m);
-            if !(clearance_m >= self.config.radius_m) {
+            let touches = self.tally.step(state.velocity_ned_m_s, clearance_m, self.config.radius_m, STEP_S);
+            if touches && !self.config.fly_on {
                 return Some(Outcome::Crashed);
             }
             let [low_m, high_m] = self.course.altitude_m;
