@@ -15,7 +15,9 @@ use crate::frame::Frame;
 use crate::gpu::Gpu;
 use crate::imu::{Gyro, GyroSample};
 use crate::plan::{Plan, Value};
-use crate::sphere::{self, AlarmFilter, Cameras, Cells, Grid, Heading, HeadingFilter, Motion, Sectors, plan};
+use crate::sphere::{
+    self, AlarmFilter, Cameras, Cells, Climb, Grid, Heading, HeadingFilter, Motion, Sectors, plan,
+};
 use crate::stream::{Latency, Stats, Stream, Ticket};
 
 /// Computes a [`Cue`] per frame from a camera's frames, their times and a gyro's samples.
@@ -34,6 +36,7 @@ pub struct Pipeline {
     /// The time of the frame that the heading belongs to, seconds.
     heading_time_s: f64,
     given: Option<Heading>,
+    climb: Option<Climb>,
     headings: HeadingFilter,
     alarms: AlarmFilter,
 }
@@ -54,6 +57,7 @@ struct Submitted {
     time_s: f64,
     before: Option<Last>,
     turn: Option<DMat3>,
+    climb: Option<Climb>,
     fault: Option<Invalid>,
 }
 
@@ -90,6 +94,7 @@ impl Pipeline {
             heading: Heading::UNKNOWN,
             heading_time_s: f64::NAN,
             given: None,
+            climb: None,
             headings: HeadingFilter::new(config.sphere.heading),
             alarms: AlarmFilter::new(config.alarm, &grid)?,
             config: config.clone(),
@@ -108,6 +113,18 @@ impl Pipeline {
     /// flow's estimate.
     pub fn set_heading(&mut self, heading: Option<Heading>) {
         self.given = heading;
+    }
+
+    /// Sets how steeply the camera climbs at the next submitted frame, and at that alone: the heading that the flow shows then
+    /// keeps its azimuth and gets this elevation.
+    ///
+    /// # Errors
+    /// As [`Climb::validate`]; the climb is then unknown.
+    pub fn set_climb(&mut self, climb: Option<Climb>) -> Result<()> {
+        self.climb = None;
+        climb.as_ref().map_or(Ok(()), Climb::validate)?;
+        self.climb = climb;
+        Ok(())
     }
 
     /// Submits a frame with the time of the middle of its exposure, in seconds of the camera's clock. See
@@ -130,11 +147,14 @@ impl Pipeline {
         if let Some(Invalid::Interval { .. }) = fault {
             self.stream.reset();
         }
-        let heading = self.given.unwrap_or_else(|| self.turned_heading(time_s));
+        let climb = self.climb.take();
+        let seen =
+            || climb.map_or(self.turned_heading(time_s), |climb| climb.of(self.turned_heading(time_s)));
+        let heading = self.given.unwrap_or_else(seen);
         let motion = Motion { prev_from_cur: turn.unwrap_or(DMat3::IDENTITY), heading };
         let motion = motion.values();
         let given = [("frame", Some(Value::Frame(frame))), ("motion", Some(Value::Raw(&motion)))];
-        let ticket = self.stream.submit(&given, Submitted { time_s, before, turn, fault })?;
+        let ticket = self.stream.submit(&given, Submitted { time_s, before, turn, climb, fault })?;
         // Later frames are compared with the time at which the image was new.
         let taken_s = frozen.map_or(time_s, |before| before.time_s);
         self.last = Some(Last { frame: ticket.frame(), time_s: taken_s, given_s: time_s, digest });
@@ -181,6 +201,7 @@ impl Pipeline {
                 }
                 if invalid.is_none() {
                     let found = headings.update(sectors, &frame.turn.unwrap_or(DMat3::IDENTITY));
+                    let found = frame.climb.map_or(found, |climb| climb.of(found));
                     (*heading, *heading_time_s) = (given.unwrap_or(found), frame.time_s);
                     threat = alarms.update(sectors, heading);
                 }

@@ -22,7 +22,7 @@ pub use config::{Derotation, Sphere};
 pub use grid::{Cells, Grid, angles_rad, bearing};
 pub use heading::{HeadingFilter, HeadingModel};
 pub use motion::MOTION_LEN;
-pub use motion::{Heading, Motion};
+pub use motion::{Climb, Heading, Motion};
 pub use plan::ExtraOutputs;
 pub(crate) use plan::{Cameras, plan};
 pub use residual_rotation::residual_rotation_rad_s;

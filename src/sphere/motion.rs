@@ -1,6 +1,10 @@
 //! The camera's motion between two frames.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result, in_ranges};
 
 /// Number of values in a plan's `motion` buffer. See [`Motion::values`].
 pub const MOTION_LEN: usize = 16;
@@ -30,6 +34,38 @@ impl Heading {
     /// Whether the direction is known: an error of at most 1 rad.
     pub fn is_known(&self) -> bool {
         self.error_rad <= 1.0
+    }
+}
+
+/// How steeply the camera climbs over ground, as an autopilot knows it from its attitude and its vertical speed.
+///
+/// The flow gives the heading's elevation less well than its azimuth: where thin upright things are most of what it is
+/// measured on, their flow is mixed with that of what is behind them, and the heading comes out too low.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Climb {
+    /// Up, a unit vector in the camera's frame at the frame's exposure.
+    pub up: DVec3,
+    /// The angle of the motion above the horizontal, −π/2 to π/2.
+    pub angle_rad: f64,
+}
+
+impl Climb {
+    /// Checks that up is a unit vector, and the angle within its range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for the one that is not.
+    pub fn validate(&self) -> Result<()> {
+        if !((self.up.length() - 1.0).abs() <= 1e-3) {
+            return Err(Error::parameter("up", self.up, "a unit vector"));
+        }
+        in_ranges(&[("angle_rad", self.angle_rad, -FRAC_PI_2, FRAC_PI_2)])
+    }
+
+    /// The heading of the same azimuth with this climb. A vertical heading has no azimuth, and stays.
+    pub(crate) fn of(&self, heading: Heading) -> Heading {
+        let Some(level) = heading.direction.reject_from(self.up).try_normalize() else { return heading };
+        let (sin, cos) = self.angle_rad.sin_cos();
+        Heading { direction: cos * level + sin * self.up, ..heading }
     }
 }
 
@@ -68,5 +104,23 @@ mod tests {
         assert_eq!(values[..6], expected);
         assert_eq!(values[12..], [0.0, 1.0, 0.0, 0.25]);
         assert_eq!(Motion::UNKNOWN.values()[..12], [0.0; 12]);
+    }
+
+    #[test]
+    fn a_climb_keeps_the_azimuth_and_sets_the_elevation() {
+        let up = DVec3::new(0.1, -1.0, 0.2).normalize();
+        let seen = Heading { direction: DVec3::new(0.3, 0.2, 1.0).normalize(), error_rad: 0.02 };
+        let climb = Climb { up, angle_rad: 0.1 };
+        assert!(climb.validate().is_ok());
+        let found = climb.of(seen);
+        assert!((found.direction.length() - 1.0).abs() < 1e-12 && found.error_rad == 0.02);
+        assert!((found.direction.dot(up).asin() - 0.1).abs() < 1e-12);
+        let azimuth = |direction: DVec3| direction.reject_from(up).normalize();
+        assert!(azimuth(found.direction).distance(azimuth(seen.direction)) < 1e-12);
+        let vertical = Heading { direction: up, error_rad: 0.0 };
+        assert_eq!(climb.of(vertical), vertical);
+        for wrong in [Climb { up: DVec3::ZERO, ..climb }, Climb { angle_rad: f64::NAN, ..climb }] {
+            assert!(wrong.validate().is_err());
+        }
     }
 }

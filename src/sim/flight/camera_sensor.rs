@@ -98,6 +98,7 @@ impl CameraSensor {
         }
         let time_s = if acts(FaultKind::NotANumber) { f64::NAN } else { at.time_s };
         self.pipeline.set_heading(at.heading);
+        self.pipeline.set_climb(at.climb)?;
         let begun = Instant::now();
         let cue = match self.pipeline.process(&self.image.frame()?, time_s) {
             Ok(cue) => Ok(cue),

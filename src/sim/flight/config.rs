@@ -9,7 +9,7 @@ use crate::flow::{Algorithm, Farneback, Update, Window};
 use crate::frame::Size;
 use crate::imu::GyroConfig;
 use crate::pipeline::PipelineConfig;
-use crate::sim::vehicle::{AirspeedModel, Gusts, GyroErrors, VaneErrors, Wind};
+use crate::sim::vehicle::{AirspeedModel, Gusts, GyroErrors, VaneErrors, VerticalSpeedErrors, Wind};
 use crate::sim::{Course, RendererConfig};
 use crate::sphere::{Derotation, HeadingModel, Sphere};
 use crate::steer::SteerParams;
@@ -47,6 +47,9 @@ pub struct FlightConfig {
     pub airspeed_error: f64,
     /// The errors of vanes for the direction of motion; None where the flow itself gives that direction.
     pub vanes: Option<VaneErrors>,
+    /// The errors of the vertical speed, by which the heading's elevation is known; `None` leaves it to the flow, as vanes
+    /// do.
+    pub vertical_speed: Option<VerticalSpeedErrors>,
     /// The wind, the velocity of the air, in m/s, north-east-down, each axis within ±[`MAX_WIND_M_S`](crate::sim::vehicle::MAX_WIND_M_S).
     pub wind_ned_m_s: glam::DVec3,
     /// The gusts, if any.
@@ -107,6 +110,7 @@ impl Default for FlightConfig {
             gyro: GyroErrors::default(),
             airspeed_error: AirspeedModel::USUAL,
             vanes: None,
+            vertical_speed: Some(VerticalSpeedErrors::default()),
             wind_ned_m_s: glam::DVec3::ZERO,
             gusts: None,
             flow_noise: FlowNoise::default(),

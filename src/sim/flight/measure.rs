@@ -190,6 +190,7 @@ mod tests {
             pose,
             velocity_world_m_s: DVec3::X * 12.0,
             heading: None,
+            climb: None,
             frame: 1,
             time_s: 1.0,
         };

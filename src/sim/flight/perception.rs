@@ -7,7 +7,7 @@ use crate::camera::Pose;
 use crate::frame::Image;
 use crate::pipeline::Cue;
 use crate::sim::World;
-use crate::sphere::Heading;
+use crate::sphere::{Climb, Heading};
 use crate::steer::View;
 
 /// A sensor's input at a frame.
@@ -17,6 +17,8 @@ pub(super) struct SensorInput<'a> {
     pub(super) velocity_world_m_s: DVec3,
     /// The camera's direction of motion in its own frame, if vanes measure it.
     pub(super) heading: Option<Heading>,
+    /// How steeply it climbs, if the vertical speed is known.
+    pub(super) climb: Option<Climb>,
     pub(super) frame: u64,
     pub(super) time_s: f64,
 }

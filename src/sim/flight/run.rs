@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
+use glam::DVec3;
+
 use super::accuracy::Divergences;
 use super::clock::{self, STEPS};
 use super::config::FlightConfig;
@@ -17,9 +19,11 @@ use crate::camera::{Camera, FRD_FROM_CAMERA};
 use crate::error::Result;
 use crate::frame::Image;
 use crate::pipeline::Cue;
-use crate::sim::vehicle::{AirspeedModel, GyroModel, STEP_S, Start, VaneModel, Vehicle, VehicleState, Wind};
+use crate::sim::vehicle::{
+    AirspeedModel, GyroModel, STEP_S, Start, VaneModel, Vehicle, VehicleState, VerticalSpeedModel, Wind,
+};
 use crate::sim::{Course, Random};
-use crate::sphere::Heading;
+use crate::sphere::{Climb, Heading};
 use crate::steer::{Command, Goal, Observation, SteerConfig, Steering};
 
 /// Standard error of a direction of motion from vanes, radians.
@@ -35,6 +39,7 @@ pub struct Flight {
     gyro: GyroModel,
     airspeed: AirspeedModel,
     vanes: Option<VaneModel>,
+    vertical_speed: Option<VerticalSpeedModel>,
     frame: u64,
     /// Commands that are decided and do not act yet, the oldest first.
     waiting: VecDeque<Command>,
@@ -84,6 +89,10 @@ impl Flight {
             steering: Steering::new(steer)?,
             gyro: GyroModel::new(&config.gyro, random.fork(3).next_u64())?,
             airspeed: AirspeedModel::new(config.airspeed_error, random.fork(4).next_u64())?,
+            vertical_speed: match &config.vertical_speed {
+                Some(errors) => Some(VerticalSpeedModel::new(errors, random.fork(6).next_u64())?),
+                None => None,
+            },
             vanes: match &config.vanes {
                 Some(errors) => Some(VaneModel::new(errors, random.fork(5).next_u64())?),
                 None => None,
@@ -145,6 +154,11 @@ impl Flight {
         self.states.push(state);
         self.push_gyro(&state);
         let motion_body = self.vanes.as_mut().map(|vanes| vanes.direction_body(&state));
+        let airspeed_m_s = self.airspeed.speed_m_s(&state);
+        let climb = self.vertical_speed.as_mut().map(|model| Climb {
+            up: state.camera_pose().world_from_camera.transpose() * DVec3::NEG_Z,
+            angle_rad: (model.up_m_s(&state) / airspeed_m_s.max(0.1)).clamp(-1.0, 1.0).asin(),
+        });
         let Self { course, config, sensor, steering, .. } = self;
         let input = SensorInput {
             world: &course.world,
@@ -154,6 +168,7 @@ impl Flight {
                 direction: FRD_FROM_CAMERA.transpose() * motion,
                 error_rad: VANES_RAD,
             }),
+            climb,
             frame: self.frame,
             time_s: state.time_s,
         };
@@ -163,7 +178,7 @@ impl Flight {
         let observation = Observation {
             time_s: state.time_s,
             ned_from_body: state.world_from_body,
-            airspeed_m_s: self.airspeed.speed_m_s(&state),
+            airspeed_m_s,
             motion_body,
             goal: Goal {
                 yaw_rad: course.goal_yaw_rad,

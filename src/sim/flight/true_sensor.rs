@@ -95,10 +95,11 @@ impl TrueSensor {
             self.spoil(&mut flows);
         }
         let carried = self.model.cur_from_prev(turn) * self.heading.direction;
-        let expected = at.heading.unwrap_or(Heading { direction: carried, ..self.heading });
+        let climbing = |heading: Heading| at.climb.map_or(heading, |climb| climb.of(heading));
+        let expected = at.heading.unwrap_or_else(|| climbing(Heading { direction: carried, ..self.heading }));
         let sectors = self.aggregator.of(flows.into_iter(), &expected, interval_s);
         let found = self.headings.update(sectors, turn);
-        self.heading = at.heading.unwrap_or(found);
+        self.heading = at.heading.unwrap_or_else(|| climbing(found));
         Some(View { sectors, heading: self.heading })
     }
 

@@ -1,4 +1,4 @@
-//! Air data sensors: airspeed and vanes.
+//! Air data sensors: airspeed, vertical speed and vanes.
 
 use glam::DVec3;
 
@@ -32,6 +32,50 @@ impl AirspeedModel {
     /// The reading, m/s.
     pub fn speed_m_s(&self, state: &VehicleState) -> f64 {
         self.scale * state.air_velocity_body_m_s.length()
+    }
+}
+
+/// The errors of a vertical speed: standard deviations, m/s, 0 or above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct VerticalSpeedErrors {
+    /// The offset: constant for a whole flight.
+    pub fixed_m_s: f64,
+    /// The noise: drawn anew for each reading.
+    pub jitter_m_s: f64,
+}
+
+impl Default for VerticalSpeedErrors {
+    /// 0.05 and 0.1 m/s: an autopilot's estimate from a barometer and an accelerometer. More of an offset would be metres
+    /// of altitude within a minute.
+    fn default() -> Self {
+        Self { fixed_m_s: 0.05, jitter_m_s: 0.1 }
+    }
+}
+
+/// The vertical speed as an autopilot estimates it.
+#[derive(Clone, Debug)]
+pub struct VerticalSpeedModel {
+    fixed_m_s: f64,
+    jitter_m_s: f64,
+    random: Random,
+}
+
+impl VerticalSpeedModel {
+    /// The same seed gives the same errors.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a deviation that is negative or not finite.
+    pub fn new(errors: &VerticalSpeedErrors, seed: u64) -> Result<Self> {
+        not_negative("fixed_m_s", errors.fixed_m_s)?;
+        not_negative("jitter_m_s", errors.jitter_m_s)?;
+        let mut random = Stream::VerticalSpeed.of(seed);
+        Ok(Self { fixed_m_s: errors.fixed_m_s * random.normal(), jitter_m_s: errors.jitter_m_s, random })
+    }
+
+    /// The reading, m/s, positive upwards.
+    pub fn up_m_s(&mut self, state: &VehicleState) -> f64 {
+        self.fixed_m_s + self.jitter_m_s * self.random.normal() - state.velocity_ned_m_s.z
     }
 }
 

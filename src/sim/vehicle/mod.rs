@@ -37,7 +37,7 @@ mod trim;
 mod turn;
 mod wind;
 
-pub use air_data::{AirspeedModel, VaneErrors, VaneModel};
+pub use air_data::{AirspeedModel, VaneErrors, VaneModel, VerticalSpeedErrors, VerticalSpeedModel};
 pub use airframe::Airframe;
 pub use autopilot::Autopilot;
 pub use dynamics::Controls;

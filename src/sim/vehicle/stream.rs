@@ -14,6 +14,7 @@ pub(super) enum Stream {
     Gyro,
     Airspeed,
     Vanes,
+    VerticalSpeed,
 }
 
 impl Stream {
