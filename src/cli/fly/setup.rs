@@ -56,10 +56,14 @@ pub(in crate::cli) struct SetupArgs {
 /// The help of `--steer`: every parameter with its default.
 fn steer_help() -> String {
     let params = SteerParams::default();
-    let all = params.named().into_iter().map(|(name, value)| format!("{name}={value}"));
+    let shown = |value: String| match value.parse::<f64>() {
+        Ok(number) => ((1e4 * number).round() / 1e4).to_string(),
+        Err(_) => value,
+    };
+    let all = params.named().into_iter().map(|(name, value)| format!("{name}={}", shown(value)));
     format!(
         "Parameters of the steering, for example radius_m=1.5,memory_s=2. Angles are in radians, times in seconds. All, with \
-         their defaults: {}",
+         their defaults to four decimals: {}",
         all.collect::<Vec<_>>().join(", ")
     )
 }
