@@ -36,7 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         squared_misfit[id.y * stride + id.x] = 9.0 - share * (9.0 - s);
         let texture = e.h.x * e.h.x + 2.0 * (e.h.y * e.h.y) + e.h.z * e.h.z;
         // A texture without bounds, after overflow, is none.
-        let seen = select(0.0, texture / (texture + 1e-2), texture <= 1e30);
+        let seen = select(0.0, texture / (texture + 0.05), texture <= 1e30);
         agreement[id.y * stride + id.x] = share * seen * (1.0 - 0.5 * min(sqrt(s), 2.0));
     }
 }

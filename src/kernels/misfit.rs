@@ -2,7 +2,7 @@
 //!
 //! Outputs: `squared_misfit`, the sum s of the squared residuals of [`super::robust_equations`], at most 9, and 9 where the place is
 //! outside the second frame or the first frame's pixel has no certainty; `agreement`, 1 − ½ min(√s, 2), times the certainty
-//! and times h / (h + 10⁻²), where h is the squared norm of the Hessian: 1 where the expansions agree, 0 where they miss each
+//! and times h / (h + 0.05), where h is the squared norm of the Hessian: 1 where the expansions agree, 0 where they miss each
 //! other by two pixels, and where there is no texture at all, not even noise.
 
 use super::expansion_pair::{BLOCK, ExpansionPair, fours};
@@ -42,7 +42,7 @@ kernel!(
 /// The largest squared residual that is told from others.
 const LARGEST: f32 = 9.0;
 /// The squared norm of the Hessian, in squared gray levels per px⁴, at which there is half a texture.
-const FLAT: f32 = 1e-2;
+const FLAT: f32 = 0.05;
 
 #[allow(clippy::too_many_arguments, reason = "one for each buffer, as in the shader")]
 fn reference(

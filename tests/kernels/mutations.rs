@@ -6,15 +6,15 @@ use std::ops::ControlFlow;
 use viewsphere::gpu::reflect;
 use viewsphere::kernel::Kernel;
 use viewsphere::kernels::{
-    ALL, affine_columns, binomial, block_sum, brightness_equations, carry, cast, cell_confidence,
+    ALL, affine_columns, binomial, block_mean, block_sum, brightness_equations, carry, cast, cell_confidence,
     cell_evidence, cell_mean, cells, compare, confidence, corner_response, correct, cubic_warp,
     downsample_flow, expansion_x, expansion_y, expected_slope, fit_weight, gradient_equations,
     keep_expansion, links, local_maxima, looming, luma, misfit, nonlocal, normal_equations,
     normalized_expansion_x, normalized_expansion_y, older_equations, patches, premultiply, pyr_down, remap,
     resample_x, resample_y, residual, robust_equations, rotational_flow, row_maximum, sectors, sensor, shade,
-    slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, structure_tensor, sweep,
-    track_points, transport, undistort_map, unweight, upsample, warp, weighted_normal_equations,
-    weighted_robust_equations, window_y,
+    slope_weights, smoothness, solve, solve_affine, solve_increment, spherical_flow, steadiness,
+    structure_tensor, surroundings, sweep, track_points, transport, undistort_map, unweight, upsample, warp,
+    weighted_normal_equations, weighted_robust_equations, window_y,
 };
 
 use crate::need;
@@ -141,6 +141,15 @@ const WRONG_RESULTS: &[(&Kernel, &str, &str)] = &[
     (&sweep::KERNEL, "i < 4u", "i < 2u"),
     (&misfit::KERNEL, "select(9.0, e.s, e.s < 9.0)", "e.s"),
     (&misfit::KERNEL, "0.5 * min(sqrt(s), 2.0)", "0.5 * sqrt(s)"),
+    (&steadiness::KERNEL, "100.0 * dot", "99.0 * dot"),
+    (&steadiness::KERNEL, "right - left == 2u", "right - left >= 1u"),
+    (&steadiness::KERNEL, "sideways + upright", "sideways - upright"),
+    (&block_mean::KERNEL, "select(0.0, sum / 16.0, inside)", "sum / 16.0"),
+    (&block_mean::KERNEL, "4u * (row - RING) + j", "4u * row + j"),
+    (&block_mean::KERNEL, "i < 4u", "i < 3u"),
+    (&surroundings::KERNEL, "RING - 3u;", "RING - 4u;"),
+    (&surroundings::KERNEL, "2u * RING + 3u", "2u * RING + 2u"),
+    (&surroundings::KERNEL, "in_stride + 1u", "1u"),
     (&fit_weight::KERNEL, "-5.8885516", "-5.889"),
     (&fit_weight::KERNEL, "+ 1e-3", "+ 1.1e-3"),
     (&fit_weight::KERNEL, "0.25 * column(next, y)", "0.25 * column(x, y)"),

@@ -2,13 +2,16 @@
 
 use crate::flow::Level;
 use crate::frame::Size;
-use crate::kernels::{resample_x, resample_y, tables, upsample};
+use crate::kernels::block_mean::{self, blocks_of};
+use crate::kernels::{resample_x, resample_y, steadiness, surroundings, tables, upsample};
 use crate::plan::{BufId, Bufs, Shape, Step};
 
 /// Radius and standard deviation in pixels of the window over which expected slopes are averaged.
 const SLOPE_WINDOW: (usize, f64) = (18, 6.0);
-/// Radius and standard deviation in pixels of the window of the confidence.
-const CONFIDENCE_WINDOW: (u32, f64) = (18, 6.0);
+/// Radius and standard deviation in pixels of what the confidence takes for near a pixel.
+const NEAR_WINDOW: (u32, f64) = (9, 3.0);
+/// The same for what is around it, in blocks of four pixels.
+const AROUND_WINDOW: (u32, f64) = (24, 8.0);
 
 /// The weights of a Gaussian window along columns and along rows.
 pub(super) struct Window {
@@ -79,17 +82,28 @@ impl Fit {
     }
 }
 
-/// The buffers of the confidence, which is the agreement averaged by a Gaussian.
+/// The buffers of the confidence: the geometric mean of the agreement near a pixel and further around, less where the flow
+/// bends.
 pub(super) struct Confidence {
     /// The result, at the size of the images.
     pub(super) plane: BufId,
-    columns: BufId,
+    steady: BufId,
+    near: Average,
+    blocks: BufId,
+    around: Average,
     /// If the finest computed level is not the images' own.
     enlarged: Option<Enlarged>,
+}
+
+/// An average of a plane over a Gaussian.
+struct Average {
+    size: Size,
     gauss: BufId,
     taps: u32,
     /// The tables that keep columns and rows where they are.
     place: [BufId; 2],
+    columns: BufId,
+    result: BufId,
 }
 
 /// The confidence of a level that is enlarged to the images' size.
@@ -99,15 +113,53 @@ struct Enlarged {
     place: [BufId; 2],
 }
 
+impl Average {
+    fn new(bufs: &mut Bufs, name: &str, size: Size, (radius, sigma): (u32, f64)) -> Self {
+        let (plane, taps) = (Shape::planar(size, 1), 2 * radius + 1);
+        Self {
+            size,
+            gauss: bufs.constant(format!("{name}, Gaussian"), tables::gauss(sigma, taps)),
+            taps,
+            place: [
+                bufs.constant(format!("{name}, own columns"), tables::place(size.width, size.width)),
+                bufs.constant(format!("{name}, own rows"), tables::place(size.height, size.height)),
+            ],
+            columns: bufs.computed(format!("{name}, columns"), plane),
+            result: bufs.computed(name.to_owned(), plane),
+        }
+    }
+
+    /// The steps that average `of`.
+    fn steps(&self, steps: &mut Vec<Step>, of: BufId) {
+        let (Size { width, height }, taps, plane) = (self.size, self.taps, Shape::planar(self.size, 1));
+        let [place_x, place_y] = self.place;
+        steps.push(Step::new(
+            &resample_y::KERNEL,
+            Confidence::LABEL,
+            resample_y::Params { width, height, in_height: height, taps },
+            &[of, self.gauss, place_y],
+            &[(self.columns, plane)],
+        ));
+        steps.push(Step::new(
+            &resample_x::KERNEL,
+            Confidence::LABEL,
+            resample_x::Params { width, height, in_width: width, taps },
+            &[self.columns, self.gauss, place_x],
+            &[(self.result, plane)],
+        ));
+    }
+}
+
 impl Confidence {
     /// Buffers for the finest computed level, of size `own`, and images of size `size`.
     pub(super) fn new(bufs: &mut Bufs, own: Size, size: Size) -> Self {
-        let plane = Shape::planar(own, 1);
-        let (radius, sigma) = CONFIDENCE_WINDOW;
-        let taps = 2 * radius + 1;
+        let (plane, blocks) = (Shape::planar(own, 1), blocks_of(own));
         Self {
             plane: bufs.computed("confidence", Shape::planar(size, 1)),
-            columns: bufs.computed("confidence, columns", plane),
+            steady: bufs.computed("steady agreement", plane),
+            near: Average::new(bufs, "agreement nearby", own, NEAR_WINDOW),
+            blocks: bufs.computed("agreement of blocks", Shape::planar(blocks, 1)),
+            around: Average::new(bufs, "agreement around", blocks, AROUND_WINDOW),
             enlarged: (own != size).then(|| Enlarged {
                 from: bufs.computed("confidence of the finest level", plane),
                 place: [
@@ -115,38 +167,26 @@ impl Confidence {
                     bufs.constant("rows of the confidence", tables::place(own.height, size.height)),
                 ],
             }),
-            gauss: bufs.constant("Gaussian of the confidence", tables::gauss(sigma, taps)),
-            taps,
-            place: [
-                bufs.constant("own columns", tables::place(own.width, own.width)),
-                bufs.constant("own rows", tables::place(own.height, own.height)),
-            ],
         }
     }
 
     /// The label of its steps.
     pub(super) const LABEL: &str = "confidence";
 
-    /// The steps that average `agreement`, a plane of the finest computed level of size `own`, and enlarge it to `full`.
-    pub(super) fn average(&self, steps: &mut Vec<Step>, agreement: BufId, own: Size, full: Size) {
-        let (Size { width, height }, taps) = (own, self.taps);
-        let plane = Shape::planar(own, 1);
-        let [place_x, place_y] = self.place;
-        steps.push(Step::new(
-            &resample_y::KERNEL,
-            Self::LABEL,
-            resample_y::Params { width, height, in_height: height, taps },
-            &[agreement, self.gauss, place_y],
-            &[(self.columns, plane)],
-        ));
+    /// The steps from `agreement` and `flow` of the finest computed level to the confidence, enlarged to the size `full`.
+    pub(super) fn judge(&self, steps: &mut Vec<Step>, agreement: BufId, flow: BufId, full: Size) {
+        let (Size { width, height }, around) = (self.near.size, Shape::planar(self.around.size, 1));
+        let plane = Shape::planar(self.near.size, 1);
+        let params = steadiness::Params { width, height };
+        steps.push(Step::new(&steadiness::KERNEL, Self::LABEL, params, &[agreement, flow], &[(self.steady, plane)]));
+        self.near.steps(steps, self.steady);
+        let params = block_mean::Params { width, height };
+        steps.push(Step::new(&block_mean::KERNEL, Self::LABEL, params, &[self.steady], &[(self.blocks, around)]));
+        self.around.steps(steps, self.blocks);
         let whole = self.enlarged.map_or(self.plane, |enlarged| enlarged.from);
-        steps.push(Step::new(
-            &resample_x::KERNEL,
-            Self::LABEL,
-            resample_x::Params { width, height, in_width: width, taps },
-            &[self.columns, self.gauss, place_x],
-            &[(whole, plane)],
-        ));
+        let params = surroundings::Params { width, height };
+        let inputs = [self.near.result, self.around.result];
+        steps.push(Step::new(&surroundings::KERNEL, Self::LABEL, params, &inputs, &[(whole, plane)]));
         if let Some(Enlarged { place: [place_x, place_y], .. }) = self.enlarged {
             let params = upsample::Params {
                 width: full.width,

@@ -344,7 +344,7 @@ impl FarnebackTvStages {
         let (Some(fit), Some(confidence)) = (&self.fit, &self.confidence) else { return };
         let level = self.levels[self.finest];
         self.misfit(steps, Confidence::LABEL, level, pair, flow);
-        confidence.average(steps, fit.agreement, level.size, self.levels[0].size);
+        confidence.judge(steps, fit.agreement, flow, self.levels[0].size);
     }
 }
 
